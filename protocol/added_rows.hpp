@@ -13,15 +13,15 @@
 namespace inkwell::protocol {
 
 /// Rows of the force law. A PC program sets this pointer when it opens a device with a force law. The rows are never
-/// freed or changed, because another thread may still read them.
+/// freed or changed, because another thread may read the rows.
 template <class Info>
 inline constinit std::atomic<const std::span<const Info>*> added_rows = nullptr;
 
 template <class Info>
 inline constexpr Info nameless_row{};
 
-/// Table with rows that are added at run time. `own` is the number of rows without the added rows. Constant expressions
-/// use the table instead of this class.
+/// Table with rows added at run time. `own` is the number of rows without the added rows. Constant expressions use the
+/// table instead of this class.
 ///
 /// The constructor must not call std::is_constant_evaluated(). GCC 14 evaluates std::is_constant_evaluated() to true if
 /// a reference is bound to the new object. A range-based for loop would therefore omit the added rows.

@@ -1,12 +1,11 @@
-// Set of up to 32 bits with a type for each kind of bit.
+// Set of up to 32 bits of type `Bit`.
 #pragma once
 
 #include <cstdint>
 
 namespace inkwell::protocol {
 
-/// Sets of different kinds do not convert to each other, and a number does not convert to a set. `Bit` is the type that
-/// the bits stand for.
+/// Neither numbers nor sets of another type convert to a set.
 template <class Bit>
 class BitSet {
  public:

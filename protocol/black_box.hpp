@@ -1,10 +1,9 @@
-// The black box: record of the signals around a fault. The board retains one black box, also across a reset, until the
-// force is switched on again or the power is lost. Consecutive rows are 1 ms apart, and one row shows the control
-// period of the fault.
+// Record of the signals around a fault (black box). The board retains one black box until the force is switched on or
+// the power is lost. Rows are 1 ms apart. One row shows the control period of the fault.
 //
 //   BlackBoxReport (device to host): presence, fault and crash data.
 //   BlackBoxRequest (host to device): first row of the next BlackBoxRowsReport.
-//   BlackBoxRowsReport (device to host): the same rows until the next request.
+//   BlackBoxRowsReport (device to host): the requested rows.
 #pragma once
 
 #include <cstddef>
@@ -18,15 +17,15 @@ namespace inkwell::protocol {
 
 /// Number of control periods between consecutive rows, except before the row of the fault.
 inline constexpr std::uint32_t black_box_step_periods = servo_rate_Hz / 1000;
-/// The black box has 100 rows (100 ms) before the fault, and 101 rows from the fault on.
+/// The black box has 100 rows before the fault and 101 rows from the fault on.
 inline constexpr std::size_t black_box_rows_before = 100, black_box_rows_from_fault = 101;
 inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + black_box_rows_from_fault;
 
-/// In a crash record, these exception numbers stand for a failed crystal (NMI) and a stalled main loop (PendSV).
+/// Exception numbers of a failed crystal (NMI) and a stalled main loop (PendSV).
 inline constexpr std::uint32_t crystal_exception = 2, hang_exception = 14;
 
-/// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 if there was no CPU
-/// fault and no stalled main loop.
+/// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 without a CPU fault
+/// or a stalled main loop.
 struct CrashFacts {
   /// Exception number: crystal_exception, hang_exception, 3 to 6 for a CPU fault, 16 or more for an unexpected
   /// interrupt.
@@ -40,8 +39,8 @@ struct CrashFacts {
   std::uint32_t configurable_fault_status;  ///< CFSR
   std::uint32_t hard_fault_status;          ///< HFSR
   std::uint32_t fault_address;              ///< MMFAR or BFAR, if CFSR marks it as valid
-  /// Return addresses from the link register and the stack, newest first. Some addresses may be left over from earlier
-  /// calls. Unused entries are 0.
+  /// Return addresses from the link register and the stack, newest first. Some addresses may belong to earlier calls.
+  /// Unused entries are 0.
   std::uint32_t callers[8];
   std::uint32_t image_check;  ///< checksum of the image that ran: the word in section .image_check of its ELF
 };
@@ -55,12 +54,12 @@ struct BlackBoxReport {
   std::uint16_t rows_before;    ///< number of rows before the fault; these rows come first
   std::uint16_t row_count;      ///< 0..black_box_rows_maximum
   std::uint32_t fault_periods;  ///< control period of the fault, or of the last row before a restart
-  /// Number of restarts that crashes have caused since the fault. Later crashes do not change the rows.
+  /// Number of crash restarts since the fault. Later crashes do not change the rows.
   std::uint32_t later_crashes;
   CrashFacts crash;  ///< crash record of the newest restart after a crash
 };
 
-/// Feature report, set. BlackBoxRowsReport::result is its result.
+/// Feature report, set. BlackBoxRowsReport::result is the result of the request.
 struct BlackBoxRequest {
   ReportId report_id = ReportId::black_box_rows;
   std::uint8_t version = protocol_version;
@@ -73,10 +72,10 @@ struct BlackBoxRow {
   float values[signal_count + force_law_signals_maximum];
 };
 
-/// The device's answer buffer has space for this number of rows.
+/// Number of rows in the device's answer buffer.
 inline constexpr std::size_t black_box_report_rows = (sizeof(ParametersReport) - 8) / sizeof(BlackBoxRow);
 
-/// Feature report, get. Consecutive rows in the order of time.
+/// Feature report, get. Consecutive rows in time order.
 struct BlackBoxRowsReport {
   ReportId report_id = ReportId::black_box_rows;
   std::uint8_t row_count : 4;  ///< 0..black_box_report_rows; 0 after the last row

@@ -1,9 +1,9 @@
-// The driver: the program that drives the arm. Results of commands and shapes.
+// Reports about the driver and about request results.
 //
 // Several programs may be connected to one arm, but only one program drives the arm. The driver claims the arm with a
 // random number and sends this claim with its commands, forces, shapes and parameters. From other programs the board
-// accepts only commands that need no claim (needs_claim()). A claim expires if no report contains it for
-// claim_expiry_s.
+// accepts only commands that need no claim (needs_claim()). A claim expires claim_expiry_s after the last report with
+// the claim.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,14 @@
 
 namespace inkwell::protocol {
 
-/// Board time from the last report with a claim to the expiry of the claim.
+/// Lifetime of a claim without reports, in board time.
 inline constexpr float claim_expiry_s = 1.0f;
 
 /// Longest program name. Longer program names are truncated.
 inline constexpr std::size_t program_name_maximum = 31;
 
-/// True if the board refuses the command while another program drives the arm. Any program may stop the force and
-/// select signals.
+/// Returns true if the board refuses the command while another program drives the arm. Any program may stop the force
+/// and select signals.
 constexpr bool needs_claim(Command command) {
   return command != Command::heartbeat && command != Command::stop && command != Command::select_signals;
 }
@@ -69,8 +69,7 @@ constexpr std::uint32_t digest_of(std::uint32_t claim) {
   return mixed ^ mixed >> 16;
 }
 
-/// Copies the program name up to its first zero, with `?` for every byte that is not printable ASCII. Returns its
-/// length.
+/// Copies the program name and replaces every byte that is not printable ASCII by `?`. Returns the length of the copy.
 constexpr std::size_t copy_program_name(const char (&field)[program_name_maximum + 1],
                                         char (&name)[program_name_maximum + 1]) {
   std::size_t length = 0;
@@ -90,8 +89,8 @@ struct RequestResultEntry {
 
 inline constexpr std::size_t request_results_kept = 8;
 
-/// Feature report, get. Results of the newest commands and shapes that have a ticket, from all programs. A bus reset or
-/// suspend erases the results and discards the queued commands.
+/// Feature report, get. Results of the newest commands and shapes with a ticket. A bus reset or suspend erases the
+/// results and discards the queued commands.
 struct RequestResultsReport {
   ReportId report_id = ReportId::request_results;
   State state;  ///< state at the time of this report

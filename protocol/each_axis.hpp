@@ -1,8 +1,8 @@
-// Groups of three table rows: for motor, encoder, joint or potentiometer 1 to 3, or for x, y and z.
+// Groups of three table rows, for axes 1 to 3 or x to z.
 //
 // The names of the three rows differ only in the digit or letter, for example gear_ratio_1, gear_ratio_2, gear_ratio_3.
-// Callers pass the first row and an index: of_axis() counts from 0 as in arrays, and of_number() counts from 1 as in
-// the row names.
+// Callers pass the first row and an index. of_axis() counts from 0 as in arrays. of_number() counts from 1 as in the
+// row names.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ constexpr std::size_t axis_place(std::string_view name) {
   return std::string_view::npos;
 }
 
-/// True if the names differ only in the axis, and the axis of `name` is `distance` after the axis of `other`.
+/// Returns true if the axis of `name` is `distance` after the axis of `other` and the names are otherwise equal.
 constexpr bool is_named_after(std::string_view name, std::string_view other, int distance) {
   const std::size_t place = axis_place(other);
   return place != std::string_view::npos && name.size() == other.size() && axis_place(name) == place &&
@@ -31,18 +31,18 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(place + 1) == other.substr(place + 1);
 }
 
-// The functions are not constexpr, so that a call stops the compilation and the compiler prints the function name.
+// A call of one of these functions is a compiler error with the function name.
 void the_table_has_no_three_rows_of_this_name();
 void the_three_rows_differ_in_unit_range_or_kind();
 
 }  // namespace detail
 
-/// Three rows of a table (Parameter or Signal). The compiler derives the rows from the first row and checks that names,
-/// units, kinds and ranges agree.
+/// Three rows of a table (Parameter or Signal). The compiler derives the rows from the first row and compares names,
+/// units, kinds and ranges.
 template <class Row>
 class EachAxis {
  public:
-  // The constructor is implicit, so that callers can pass a row where a function expects an EachAxis.
+  // The constructor is implicit, so that a row converts to an EachAxis.
   consteval EachAxis(Row first) : EachAxis(first, named_after(first, 1), named_after(first, 2)) {}
   /// Groups three rows with unrelated names.
   consteval EachAxis(Row first, Row second, Row third) : rows_{first, second, third} {

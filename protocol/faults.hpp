@@ -1,4 +1,4 @@
-// Faults and refusals. protocol/tables/faults.toml and refusals.toml describe the rows and how to add one.
+// Faults and refusals, from protocol/tables/faults.toml and refusals.toml.
 #pragma once
 
 #include <array>

@@ -14,14 +14,14 @@
 
 namespace inkwell::protocol {
 
-/// The identity follows the vector table (RM0090, "Vector table for STM32F405xx"), which is aligned to 512 bytes.
+/// The identity follows the vector table (RM0090, "Vector table for STM32F405xx").
 inline constexpr std::uint32_t image_begin = 0x0800'0000, image_identity_offset = 512;
 
 /// Flash size of the STM32F405 on both boards.
 inline constexpr std::size_t flash_bytes = 1024 * 1024;
 
-/// True if the bytes may be the complete flash content of an STM32F405. The size must match. The reset vector (RM0090,
-/// "Boot configuration") must either point into the flash or be erased.
+/// Returns true if the bytes may be the complete flash content of an STM32F405. The size must match. The reset vector
+/// (RM0090, "Boot configuration") must either point into the flash or be erased.
 inline bool may_be_flash(std::span<const std::byte> content) {
   if (content.size() != flash_bytes) return false;
   constexpr std::uint32_t erased = 0xFFFF'FFFF;

@@ -1,5 +1,5 @@
-// Request of a user or a program for an injected fault, and the names of the possible locations. The virtual board
-// checks requests (injection/injection.hpp), because pins and memory depend on the simulated board.
+// Requests for injected faults. The virtual board checks requests (injection/injection.hpp), because pins and memory
+// depend on the simulated board.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ inline constexpr std::array<std::string_view, 3> one_to_three{"1", "2", "3"};
 inline constexpr std::array<std::string_view, 6> legs{"1A", "1B", "2A", "2B", "3A", "3B"};
 }  // namespace detail
 
-/// Returns the location names of a kind that has few locations, and an empty list for other kinds.
+/// Returns the location names, or an empty list for a kind with many locations.
 constexpr std::span<const std::string_view> names_of_places(InjectionPlace place) {
   switch (place) {
     case InjectionPlace::motor:
@@ -54,7 +54,7 @@ constexpr std::string_view wanted_place(InjectionPlace place) {
   return "";
 }
 
-/// Returns the help text of a row, in which values replace the names in braces.
+/// Returns the help text of a row with values instead of names in braces.
 inline std::string help_of(const InjectionInfo& row) {
   constexpr std::string_view figure = "{wire_spike_us}";
   const std::string_view text = row.help;

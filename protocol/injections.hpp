@@ -1,4 +1,4 @@
-// Injected faults for simulations. protocol/tables/injections.toml describes the rows and how to add one.
+// Injected faults for simulations, from protocol/tables/injections.toml.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Parameters: their rows and sets of their values. protocol/tables/parameters.toml describes the rows and how to add
-// one. The parameters of the image's force law follow the last row (docs/force-laws.md).
+// Parameter rows from protocol/tables/parameters.toml, and sets of parameter values. The parameters of the image's
+// force law follow the last row (docs/force-laws.md).
 #pragma once
 
 #include <array>
@@ -31,9 +31,8 @@ struct ParameterInfo {
   std::string_view group;
   const char* help = "";
   bool belongs_to_arm;  ///< true if every arm description sets it
-  /// True if the parameter is part of the arm's geometry. A change of the geometry would make the force jump, and is
-  /// therefore allowed only while the force is off. Other parameters can change at any time, even if belongs_to_arm is
-  /// set.
+  /// True if the parameter can change only while the force is off. A change of the arm's geometry would make the force
+  /// jump.
   bool needs_force_off;
 };
 

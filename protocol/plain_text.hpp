@@ -35,8 +35,7 @@ constexpr std::size_t printable_length(std::string_view text) {
   return is_utf8 && !is_control ? length : 0;
 }
 
-/// Returns the text with a space for each tab and line end, and '?' for every other byte that is not printable. The
-/// length in bytes does not change.
+/// Replaces tabs and line ends by spaces, and other unprintable bytes by '?'. The length in bytes does not change.
 inline std::string plain_text(std::string_view text) {
   std::string plain;
   while (!text.empty()) {
@@ -50,7 +49,7 @@ inline std::string plain_text(std::string_view text) {
   return plain;
 }
 
-/// Like plain_text(), but retains tabs and line feeds. Used for multi-line text and for the output of other programs.
+/// Like plain_text(), but retains tabs and line feeds. This function is for multi-line text.
 inline std::string plain_lines(std::string_view text) {
   std::string plain;
   while (!text.empty()) {

@@ -1,5 +1,5 @@
-// Table of all HID reports and their sizes. The device generates its report descriptor from this table and checks
-// GET_REPORT and SET_REPORT against it. `inkwell reference` prints the table.
+// Table of all HID reports and their sizes. The device generates its report descriptor from this table. `inkwell
+// reference` prints the table.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
 
 // clang-format off
 /// X(id, usage, kind, get, set, bytes, set_bytes, meaning). `get` and `set` are the structures that are read and
-/// written, or `none`. `bytes` is the declared size, which is enough for both structures. `set_bytes` is the smallest
-/// size of a written report, or 0.
+/// written, or `none`. `bytes` is the declared size for both structures. `set_bytes` is the smallest size of a written
+/// report, or 0.
 #define INKWELL_REPORTS(X)                                                                                             \
   X(pose, 2, input, PoseReport, none, sizeof(PoseReport), 0, "The newest pose. The interrupt endpoint also sends it every millisecond.") \
   X(command, 3, output, none, CommandReport, sizeof(CommandReport), sizeof(CommandReport), "A command. The report is also a sign of life.") \
@@ -91,7 +91,8 @@ constexpr std::size_t longest_report(ReportKind kind) {
   return longest;
 }
 
-/// True if the device accepts a written report of `bytes` bytes. A report must contain its used part and may be padded.
+/// Returns true if the device accepts a written report of `bytes` bytes. A report must contain its used part and may be
+/// padded.
 constexpr bool is_accepted_length(const ReportInfo& row, std::size_t bytes) {
   return row.can_be_set() && bytes >= row.set_bytes_minimum && bytes <= longest_report(row.kind);
 }

@@ -2,11 +2,10 @@
 // other structures are naturally aligned.
 //
 //   PoseReport: input report, one per bus frame (1 ms of the host's clock).
-//   CommandReport, ForceReport: output reports. Each report is also a sign of life.
+//   CommandReport, ForceReport: output reports. Each output report restarts the host timeout.
 //   InformationReport, TransactionReport, FrameReport, ForceLawReport: feature reports (get).
-//   ParametersReport: feature report (get and set). A written report is one transaction, which is applied completely or
-//   not at all.
-//   ShapesReport: feature report (set). A written report is applied completely or not at all.
+//   ParametersReport: feature report (get and set). The board applies a ParametersReport completely or not at all.
+//   ShapesReport: feature report (set). The board applies a ShapesReport completely or not at all.
 //   Black box: feature reports in protocol/black_box.hpp.
 //   Self-test: feature report in protocol/self_test.hpp.
 //   Parameter store: feature report in protocol/store.hpp.
@@ -14,10 +13,9 @@
 //   Claim of the driver: feature reports in protocol/driver.hpp.
 //   Results of commands and shapes: feature report in protocol/driver.hpp.
 //
-// Sizes and directions of all reports are in protocol/report_table.hpp. A report that the host sets may be longer than
-// its used part, and the device ignores the rest. Some hosts pad every report to the length of the longest report of
-// its kind. A report that the host reads is filled with zeros up to its declared size or the requested length (HID
-// 1.11, section 7.2.1).
+// Sizes and directions of all reports are in protocol/report_table.hpp. The device ignores bytes after the used part of
+// a written report. Some hosts pad every report to the longest report length. The device pads reports with zeros to the
+// declared size or the requested length (HID 1.11, section 7.2.1).
 //
 // ControllerReport has a separate interface. Every program that supports joysticks can read this interface.
 #pragma once
@@ -39,13 +37,13 @@ namespace inkwell::protocol {
 
 static_assert(std::endian::native == std::endian::little, "the structures are transmitted in their memory layout");
 
-/// Number of versions by which this build is ahead of the source tree. A test firmware sets this number
+/// Number of protocol versions by which this build is ahead of the source tree. A test firmware sets this number
 /// (tests/target/next_protocol).
 #ifndef INKWELL_PROTOCOL_VERSIONS_AHEAD
 #define INKWELL_PROTOCOL_VERSIONS_AHEAD 0
 #endif
 
-/// The protocol version increases whenever a structure below or the meaning of an id changes.
+/// Increase the protocol version when a report structure or the meaning of an id changes.
 inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt and the scope. Every `time_periods` is a number of control periods.
@@ -109,8 +107,7 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
 
 constexpr bool is_reached(std::uint8_t limits, Limit limit) { return (limits & static_cast<std::uint8_t>(limit)) != 0; }
 
-/// Combination of a program's force with the board's force law (the walls of the box). The hand feels shapes in every
-/// mode.
+/// Combination of a program's force with the board's force law. The hand feels shapes in every mode.
 enum class ForceMode : std::uint8_t {
   none = 0,              ///< the program has ended, and its force fades
   beside_walls = 1,      ///< the hand feels the program's force and the walls
@@ -178,16 +175,16 @@ struct SignalSelection {
 
 struct TestPulse {
   std::uint8_t motor;  ///< 1..3
-  /// Pulse height in A or V. The height is bounded by the current or voltage limit, and by the current that produces
-  /// force_limit_N in the present pose.
+  /// Pulse height in A or V. The current of the pulse is limited to the motor's limit and to the current for
+  /// force_limit_N.
   float amplitude;
   float duration_s;  ///< 0..test_duration_maximum_s; the pulse stops early when it has delivered energy_reserve_J
 };
 
 /// Output report. PoseReport::command_token equals `token` after the command has been carried out. The device does not
-/// acknowledge an invalid command, or a report with a wrong version or length. The device also does not acknowledge a
-/// command on endpoint 0 while the command queue is full. While a program drives the arm, other programs can send only
-/// commands that need no claim (needs_claim()).
+/// acknowledge an invalid report. While the command queue is full, the device does not acknowledge a command on
+/// endpoint 0. While a program drives the arm, other programs can send only commands that need no claim
+/// (needs_claim()).
 struct CommandReport {
   ReportId report_id = ReportId::command;
   Command command;
@@ -208,11 +205,11 @@ struct CommandReport {
 /// The board interpolates between two force reports over at most this interval.
 inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 
-/// Output report, at most one per millisecond: the force that a program requests at the probe. The board interpolates
-/// linearly to the requested force within `interval_ms`. force_limit_N limits the force, and
-/// program_force_change_N_per_s limits its rate of change. The force fades if no report arrives for
-/// program_force_expiry_s. The device refuses and counts a force that is not finite, an unknown mode, and an interval
-/// out of range. The device also refuses and counts an old pose, and a claim that is not the driver's.
+/// Output report: the force of a program at the probe. A program sends at most one report per millisecond. The board
+/// interpolates linearly to the requested force within `interval_ms`. The parameters force_limit_N and
+/// program_force_change_N_per_s limit the force. The force fades if no report arrives for program_force_expiry_s. The
+/// device refuses and counts invalid reports. The device also refuses reports with an old pose or with a claim that is
+/// not the driver's.
 struct ForceReport {
   ReportId report_id = ReportId::force;
   ForceMode mode;
@@ -241,8 +238,8 @@ inline constexpr float speed_stops_driving_from = 0.9f;
 /// Longest board name. A board has the name of its folder in boards/.
 inline constexpr std::size_t board_name_maximum = 31;
 
-/// Returns the board name in a field of a report or an image. Returns an empty name if the field has no terminating
-/// zero or a character that is not printable.
+/// Returns the board name in a field of a report or an image. Returns an empty name if the field is not terminated or
+/// not printable.
 constexpr std::string_view board_name(const char (&field)[board_name_maximum + 1]) {
   const std::string_view name(field, std::find(field, std::end(field), '\0'));
   const bool is_valid = name.size() <= board_name_maximum &&
@@ -250,11 +247,11 @@ constexpr std::string_view board_name(const char (&field)[board_name_maximum + 1
   return is_valid ? name : std::string_view{};
 }
 
-/// Since this protocol version, the device reports its board name.
+/// First protocol version with a board name in InformationReport.
 inline constexpr std::uint16_t first_version_with_board = 12;
 
 /// Feature report: identity and counters of the device. The position of the fields before the hashes is the same in all
-/// later versions. A companion of another version can therefore still identify the device.
+/// later versions. A companion of another version can therefore identify the device.
 struct InformationReport {
   ReportId report_id = ReportId::information;
   std::uint8_t reserved = 0;
@@ -293,8 +290,8 @@ inline constexpr std::size_t parameter_entries_maximum = 96;
 static_assert(parameter_count + force_law_parameters_maximum <= parameter_entries_maximum);
 
 /// Feature report. The host reads all parameters in table order, followed by the parameters of the force law. To set
-/// parameters, the host sends at least the used part, which has parameters_report_size(count) bytes. A report with
-/// ReportId::stored (get only) contains the operation restore_stored and the parameter values after the next start.
+/// parameters, the host sends at least parameters_report_size(count) bytes. A report with ReportId::stored (get only)
+/// contains the operation restore_stored and the parameter values after the next start.
 struct ParametersReport {
   ReportId report_id = ReportId::parameters;
   ParameterOperation operation;
@@ -317,8 +314,8 @@ struct TransactionReport {
   std::uint16_t reserved;
 };
 
-/// Feature report: start of the newest bus frame on the board's clock. Two reports together show the ratio of the host
-/// clock to the board clock.
+/// Feature report: start time of the newest bus frame on the board's clock. Two reports together show the ratio of the
+/// host clock to the board clock.
 struct FrameReport {
   ReportId report_id = ReportId::frame;
   std::uint8_t is_known;  ///< 0: there is no bus frame, or its time is not known yet; then all further fields are 0
@@ -334,8 +331,8 @@ struct SurfaceEntry {
   float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
   float static_friction;    ///< 0..friction_maximum, relative to the normal force
   float dynamic_friction;   ///< 0..static_friction
-  /// Life of the shape after it takes effect, 0..shape_life_maximum_s. An infinite life lasts until the claim ends, and
-  /// a life of 0 means no shape.
+  /// Life of the shape after it takes effect, 0..shape_life_maximum_s. A shape with infinite life exists until the
+  /// claim ends. A life of 0 means no shape.
   float life_s;
 };
 
@@ -356,10 +353,9 @@ inline constexpr float shape_life_maximum_s = 10.0f;
 inline constexpr float shape_distance_maximum_m = 10.0f;  ///< limit of every length and coordinate
 inline constexpr float friction_maximum = 3.0f;
 
-/// Feature report, set: the new shapes, each in a separate slot. The new shapes replace all previous shapes at the
-/// start of one control period, without a jump of the force. The host has to send only the used part:
-/// shapes_report_size(plane_count) bytes. The device refuses the whole report if it is invalid or does not come from
-/// the driver. RequestResultsReport has the result. All shapes are removed when the claim ends.
+/// Feature report, set: the new shapes. The new shapes replace all previous shapes without a jump of the force. The
+/// host sends at least shapes_report_size(plane_count) bytes. The device refuses the whole report if it is invalid or
+/// does not come from the driver. RequestResultsReport has the result. All shapes are removed when the claim ends.
 struct ShapesReport {
   ReportId report_id = ReportId::shapes;
   std::uint8_t version = protocol_version;
@@ -373,10 +369,10 @@ struct ShapesReport {
   PlaneEntry planes[shape_planes_maximum];
 };
 
-/// Feature report: the rows that the image's force law adds to the tables. The name and the description of the force
-/// law follow this header. Each parameter has three floats (minimum, maximum, default), a name, a unit and a help text.
-/// Each signal has a name, a unit and a help text. Every text is zero-terminated. The parameters are real numbers, and
-/// their ids count up from force_law_first_id. The signals are floats and follow the last row of the signal table.
+/// Feature report: table rows of the image's force law. The name and the description of the force law follow this
+/// header. Each parameter has three floats (minimum, maximum, default), a name, a unit and a help text. Each signal has
+/// a name, a unit and a help text. Every text is zero-terminated. The ids of the parameters count up from
+/// force_law_first_id. The signals follow the last row of the signal table.
 struct ForceLawReport {
   ReportId report_id = ReportId::force_law;
   std::uint8_t parameter_count;  ///< 0..force_law_parameters_maximum

@@ -1,6 +1,6 @@
-// Results of requests that have no separate result report: commands, shapes and black-box rows.
+// Results of requests without a separate result report: commands, shapes and black-box rows.
 //
-// The board reports a full queue and a refusal as results, never as a USB stall. Some hosts cannot distinguish a stall
+// The board reports a full queue or a refusal as a result, never as a USB stall. Some hosts cannot distinguish a stall
 // from an unplugged device.
 #pragma once
 

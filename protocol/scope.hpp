@@ -1,19 +1,18 @@
 // Scope frames, sent over the vendor bulk interface.
 //
 // A frame is one bulk transfer: a header and the samples of consecutive control periods. A frame has at most
-// scope_frame_maximum bytes and scope_frame_samples_maximum samples. Each transfer ends with a packet of less than 64
-// bytes, which is empty if the length is a multiple of 64.
+// scope_frame_maximum bytes and scope_frame_samples_maximum samples. The last packet of each transfer has 0 to 63
+// bytes.
 //
-// Between two transfers the bus is idle until the device has loaded the next frame. Frames are therefore long. With 14
-// floats per sample, each frame leaves an idle time of two packets. A frame of only 36 samples would leave an idle time
-// of less than half a packet. A gap in `sequence` indicates a lost frame. The `first_period` of the next frame then
-// shows the number of lost samples.
+// Between two transfers the bus is idle until the device has loaded the next frame. Long frames reduce the idle time. A
+// gap in `sequence` indicates a lost frame. The field `first_period` of the next frame shows the number of lost
+// samples.
 //
 // In the encoding `full`, a sample has the value of every selected signal, in the order of the selection.
 //
-// In the encoding `changes`, a sample begins with a 32-bit mask, in which bit i is the i-th selected signal. The values
-// that differ from the previous sample follow in rising order of i. The first sample of a frame has every bit set, so
-// that a reader can decode each frame alone.
+// In the encoding `changes`, a sample begins with a 32-bit mask, in which bit i stands for the i-th selected signal.
+// The values that differ from the previous sample follow in rising order of i. The first sample of a frame has every
+// bit set, so that a reader can decode each frame alone.
 //
 // The encoding is `full` for samples of up to scope_full_sample_maximum bytes. At 20 kHz, 14 floats require 1.12 MB/s.
 // Full-speed USB transmits up to 1.216 MB/s in addition to the pose. Longer samples are encoded as `changes`.
@@ -30,7 +29,7 @@ enum class ScopeEncoding : std::uint8_t { full = 0, changes = 1 };
 
 inline constexpr std::uint32_t scope_magic = 0x43535749;  // "IWSC" in little-endian byte order
 inline constexpr std::size_t scope_frame_maximum = 6144;
-/// 109 samples last 5.5 ms. This duration bounds the latency for a selection of few signals.
+/// For a selection of few signals, the latency is at most 109 periods (5.5 ms).
 inline constexpr std::uint32_t scope_frame_samples_maximum = 109;
 inline constexpr std::size_t scope_full_sample_maximum = 56;
 

@@ -1,8 +1,7 @@
-// Self-test of the board: its items, their results, and the report.
+// Self-test items, results and report.
 //
 // The self-test runs after each start, as soon as the current sensor offsets are measured, and on command. During the
-// self-test the state is `testing`. Flash, RAM and watchdog are tested only at start-up, and their results do not
-// change afterwards.
+// self-test the state is `testing`. Flash, RAM and watchdog are tested only at start-up.
 #pragma once
 
 #include <array>
@@ -158,7 +157,7 @@ struct SelfTestReport {
 static_assert(sizeof(SelfTestEntry) == 8);
 static_assert(sizeof(SelfTestReport) == 16 + 8 * self_test_item_count);
 
-/// True if a failed item prevents the force.
+/// Returns true if a failed item prevents the force.
 constexpr bool takes_force(const SelfTestReport& report) {
   for (std::size_t i = 0; i < self_test_item_count; ++i)
     if (self_test_item_table[i].takes_force && report.entries[i].result == SelfTestResult::failed) return true;

@@ -6,7 +6,7 @@
 // The signals of the image's force law follow the last row (docs/force-laws.md).
 #pragma once
 
-// To add a signal, read protocol/tables/signals.toml, which contains the rows.
+// protocol/tables/signals.toml contains the rows and the steps for a new signal.
 
 #include <array>
 #include <cstddef>

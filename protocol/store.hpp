@@ -1,8 +1,7 @@
-// The parameter store: stored parameters in the flash of the board, and the report about the store.
+// Parameter store in the flash of the board.
 //
 // The board loads the last stored set at start-up. One command stores the current set, and another command erases the
-// stored set. Both commands are allowed only while the force is off and no queued command switches the force on
-// (may_store()).
+// stored set. Both commands are allowed only while the force is off (may_store()).
 #pragma once
 
 #include <array>
@@ -97,7 +96,7 @@ INKWELL_STORE_CONTENTS(X)
 #undef X
 }  // namespace detail
 
-/// True if the board may store or erase parameters, because the force is off and only a command can switch it on.
+/// Returns true if the board may store or erase parameters in this state.
 constexpr bool may_store(State state) {
   return state == State::unreferenced || state == State::ready || state == State::fault;
 }

@@ -1,6 +1,5 @@
-// Supervisor of the board: states, transitions, and the monitored faults of each state.
-// protocol/tables/supervision.toml contains the rows. The firmware uses the tables (supervisor.hpp), and `inkwell
-// reference` prints them. Firmware tests cover every cell.
+// States, transitions and monitored faults, from protocol/tables/supervision.toml. The firmware's supervisor uses these
+// tables. Firmware tests cover every cell.
 #pragma once
 
 #include <array>
@@ -73,7 +72,7 @@ inline constexpr States with_force = []() {
   return states;
 }();
 
-/// Uses a bit mask instead of the table, because the control interrupt calls this function.
+/// A bit mask is faster than the table in the control interrupt.
 constexpr bool force_is_on(State state) { return with_force.contains(state); }
 
 // ---- transitions -------------------------------------------------------------------------------------------
@@ -107,10 +106,10 @@ enum class Clearing : std::uint8_t {
 /// Method by which a fault switches the motors off.
 enum class Off : std::uint8_t {
   coast,  ///< bridges off: for faults that make currents, bridges, supply or speed unreliable
-  /// The low-side switches are on, and the back EMF brakes the motors until the probe is slow. If a motor current
-  /// exceeds the current for the force limit, the bridges are off for one period.
+  /// The low-side switches short the motors until the probe is slow. A motor current above the current for the force
+  /// limit switches the bridges off for one period.
   brake,
-  /// Like `brake`, but with a lower current threshold, because the hand may continue its motion.
+  /// Brakes with a lower current threshold than `brake`, because the hand may continue its motion.
   brake_gently,
 };
 
@@ -134,8 +133,8 @@ using Conditions = BitSet<Condition>;
 static_assert(condition_table.size() <= 32);
 
 namespace detail {
-/// Index of each fault code in condition_table. The indices are stored, because the compiler does not evaluate a search
-/// in a long table at compile time.
+/// Index of each fault code in condition_table. The compiler does not evaluate a search in a long table at compile
+/// time.
 inline constexpr auto places = []() {
   std::array<std::uint8_t, fault_code_end> result{};
   result.fill(static_cast<std::uint8_t>(condition_table.size()));

@@ -5,8 +5,8 @@
 
 namespace inkwell::protocol::usb {
 
-/// Vendor identifier of pid.codes, and its product identifier for private tests. docs/flashing.md lists the steps for
-/// registering a separate identifier for Inkwell.
+/// Vendor identifier of pid.codes and its product identifier for private tests. The page docs/flashing.md describes how
+/// to register a product identifier.
 inline constexpr std::uint16_t vendor_id = 0x1209;
 inline constexpr std::uint16_t product_id = 0x0001;
 inline constexpr bool is_test_identity = true;

@@ -15,7 +15,6 @@
 namespace inkwell::arms {
 namespace {
 
-/// Numeric key of [motor] or [simulation], with the variable that receives its value.
 struct Number {
   std::string_view name;
   double* value;

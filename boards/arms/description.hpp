@@ -1,4 +1,4 @@
-// Arm descriptions: the contents of boards/arms/*.toml, checked key by key.
+// Reads and validates the arm descriptions in boards/arms/*.toml.
 #pragma once
 
 #include <array>
@@ -17,8 +17,7 @@ struct Motor {
   double inductance_H;
 };
 
-/// Properties that only a simulation needs. The links are slender, so each inertia refers to an axis perpendicular to
-/// its link.
+/// Properties that only a simulation needs. Each link inertia refers to an axis perpendicular to the link.
 struct Simulation {
   double base_inertia_kg_m2;  ///< inertia about the axis of joint 1, without the links
   double link_2_mass_kg;
@@ -39,22 +38,20 @@ struct Simulation {
 struct Description {
   std::string name;
   std::string description;
-  /// Parameters from the file; the other parameters have their defaults.
+  /// Parameters that the file does not set have their default values.
   protocol::ParameterSet parameters;
   Motor motor;
   Simulation simulation;
 };
 
-/// Error message with the file, the line if known, the error and its remedy. The message is safe to print.
+/// The message states file, line, error and remedy.
 class DescriptionError : public std::runtime_error {
  public:
   explicit DescriptionError(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}
 };
 
 /// Reads an arm description.
-/// @throws DescriptionError if the file is missing or is not TOML. A missing key, an unknown key or a wrong unit also
-///         causes a DescriptionError. A value must be a number within its range, and an integer if the key requires an
-///         integer. Each lower bound must be below its upper bound.
+/// @throws DescriptionError if the file is missing, is not TOML, has a missing or unknown key, or has an invalid value.
 Description read(const std::filesystem::path& file);
 
 /// Reads an arm description from a string. Error messages use `source` as the name of the string.

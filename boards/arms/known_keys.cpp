@@ -15,7 +15,7 @@ struct Unit {
   std::string_view rule;
 };
 
-// If a suffix ends with another suffix, the longer suffix comes first.
+// The first matching suffix is used, so `_Nm_per_rad` precedes `_rad`.
 constexpr Unit units[] = {
     {"_counts_per_turn", "encoders are in counts per turn"},
     {"_Nms_per_rad", "damping is in newton metre seconds per radian"},

@@ -7,8 +7,8 @@
 
 namespace inkwell::arms {
 
-/// Returns advice for an unknown key. The advice is the known key of the same quantity ("lengths are in metres:
-/// link_2_m"), the nearest known key ("did you mean ...?"), or the list of known keys.
+/// Returns advice for an unknown key. The advice corrects the unit ("lengths are in metres: link_2_m"), suggests the
+/// nearest key ("did you mean ...?"), or lists the known keys.
 std::string advice_for(std::string_view key, std::span<const std::string_view> known);
 
 }  // namespace inkwell::arms

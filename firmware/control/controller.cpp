@@ -34,8 +34,8 @@ bool over_current(const Triple& current_A, const Triple& limit_A) {
   return false;
 }
 
-/// A force counts as limited if its magnitude is at least this part of the force limit. A program's force is limited
-/// before it is added to the other forces, and both operations may round the force down by a few millionths.
+/// A force with at least this fraction of the force limit counts as limited. Rounding may reduce a limited force by a
+/// few millionths.
 constexpr float at_limit_part = 1.0f - 1e-4f;
 
 /// Decrease of the over-current bound per update. The bound falls from the largest limit to the smallest limit in 10
@@ -103,7 +103,7 @@ void Controller::replace_shapes(const Shapes& shapes) {
 }
 
 void Controller::condition_samples(const Samples& samples, const Settings& settings) {
-  // The bridges are off until the offsets are known, so the readings are the offsets.
+  // The bridges are off, so the current readings are the sensor offsets.
   if (!offsets_.measured()) {
     if (offsets_.periods == 0)
       for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
@@ -122,15 +122,14 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   const GimbalCurve& curve = settings.gimbal[turn_];
   probe_.gimbal_rad[turn_] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
   update_heat(heat_, turn_, current_A_[turn_], settings.heat);
-  // While the force is on, a new reference would shift the walls relative to the hand.
+  // While the force is on, a new inkwell reference would shift the walls relative to the hand.
   if (!force_is_on())
     update_reference(reference_, encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
 }
 
-/// This check precedes the computation of pose and current errors, because a current change depends on the previous
-/// speed and the previous errors.
+/// This check uses the speed and the current errors of the previous period.
 void Controller::check_for_jumps(const Triple& change_A, const Settings& settings) {
-  // Currents change quickly during braking and directly after the bridges are switched off.
+  // Fast current changes are normal during braking and directly after bridge switch-off.
   if (!drive_.enabled) return;
   for (std::size_t i = 0; i < 3; ++i) {
     const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[i] * joint_speed_rad_per_s_[i];
@@ -179,8 +178,8 @@ void Controller::render_force(const Settings& settings) {
     probe_.wall = settings.wall;
     probe_.switches = switches_.closed;
     const Vector3& law_N = law_.force_N(probe_, settings.force_law);
-    // The squared force must also be finite, because the direction of the limited force is computed from it. If the
-    // inputs are not finite, the force law did not cause the fault.
+    // The force limit computes the squared force, so the square must also be finite. Inputs that are not finite are not
+    // a fault of the force law.
     if (is_finite(dot(law_N, law_N))) [[likely]]
       rendered_N = rendered_N + law_N;
     else if (is_finite(sum(probe_.position_m) + sum(probe_.velocity_m_per_s)))
@@ -194,14 +193,13 @@ void Controller::render_force(const Settings& settings) {
   advance(transition_);
   force_gain_ = supervisor_.state == State::landing ? std::max(force_gain_ - settings.landing_per_period, 0.0f)
                                                     : std::min(force_gain_ + settings.ramp_per_period, 1.0f);
-  // A lowered limit applies immediately.
+  // A lowered force limit applies immediately.
   force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
   const Force force = bounded(rendered_N_ + program_.force_N, force_limit_N_);
   limits_ = bit(Limit::force, force.magnitude_N >= at_limit_part * force_limit_N_ && force.magnitude_N > 0.0f);
   limit_and_apply_force(scaled(force, force_gain_), settings);
 }
 
-/// Applies a force to the hand and limits the energy, the speed and the rate of change of the force.
 void Controller::limit_and_apply_force(Force requested, const Settings& settings) {
   update_energy(reserve_, force_.force_N, probe_.position_m, settings.energy);
   const float power_W = dot(requested.force_N, probe_.velocity_m_per_s);
@@ -213,7 +211,7 @@ void Controller::limit_and_apply_force(Force requested, const Settings& settings
   const float squared_N2 = dot(change_N, change_N);
   if (squared_N2 > settings.change_squared_N2) [[unlikely]] {
     const float part = settings.change_squared_N2 * reciprocal_square_root(settings.change_squared_N2 * squared_N2);
-    // A lowered force limit applies immediately, even if the previous force was larger.
+    // A lowered force limit applies immediately.
     requested = bounded(force_.force_N + part * change_N, force_limit_N_);
     limits_ |= bit(Limit::change, true);
   }
@@ -232,8 +230,7 @@ Force Controller::reduce_driving_part(const Force& requested, float power_W, con
 
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
-  // If one link motor is not used, the torque of the other link motor alone would produce a different and possibly
-  // larger force.
+  // If one link motor is idle, the torque of the other link motor must be corrected.
   if (settings.motors.idle != 0) remove_idle_torque(settings.motors.idle, torque_Nm_, jacobian_);
   const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.beyond);
   reference_A_ = references.reference_A;
@@ -244,7 +241,7 @@ void Controller::find_current_references(const Settings& settings) {
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
-/// Updates the assumed resistance of one motor per period. The measured resistance is corrected for the present heat.
+/// Updates the assumed resistance of one motor per period. The resistance depends on the motor heat.
 void Controller::update_resistance(const Settings& settings) {
   resistances_[turn_] = Resistance::of(measured_.resistance_ohm[turn_], heat_.heat[turn_] - measured_.heat[turn_],
                                        settings.motor_model.resistance_ohm[turn_]);
@@ -261,14 +258,14 @@ void Controller::check_motors(const Settings& settings) {
   if (!update_motor_check(motor_check_, current_A_, joint_speed_rad_per_s_, resistances_,
                           settings.motor_model.back_emf_Vs_per_rad)) [[unlikely]]
     raise(Fault::motor_implausible);
-  // The duty cycles of the previous period remain active until the next period.
+  // The bridges apply the duty cycles of the previous period.
   turn_to(motor_check_, turn_, drive_.duty[turn_] * supply_.supply_V,
           {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
-/// If a current reading is too low, the current loop drives too much current. The voltage is therefore limited to the
-/// voltage for the sum of reference current and current margin. The margin corresponds to the difference between force
-/// limit and present force. Each period updates the voltage range of one motor.
+/// If a current sensor reads too low, the current loop drives too much current. The voltage range therefore allows at
+/// most the reference current plus a margin. The margin is the current for the difference between force limit and
+/// present force. Each period updates the voltage range of one motor.
 void Controller::bound_voltages(const Settings& settings) {
   const float supply_bound_V = board_.duty_limit * supply_.supply_V;
   const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
@@ -283,7 +280,7 @@ void Controller::bound_voltages(const Settings& settings) {
       voltage_range(most_A, resistances_[turn_], back_emf_V, motor_check_.loss.expected_V(), bound_V);
 }
 
-/// After the bridges have been off for a while, the sensors must read their measured offsets.
+/// While the bridges are off, each current sensor must read its measured offset.
 void Controller::check_idle_currents() {
   bool off_zero = false;
   if (!drive_.enabled && !drive_.brake && offsets_.measured())
@@ -318,8 +315,8 @@ void Controller::regulate_currents(const Settings& settings) {
   drive_.enabled = true;
 }
 
-/// The energy, speed and change limits of the rendered force do not apply to a motor test. The test stops if the arm is
-/// too fast or the host is silent. The test pulse also stops when the exchanged energy exceeds the energy reserve.
+/// The limits of the rendered force do not apply to a motor test. A motor test stops if the arm is too fast or if no
+/// host report arrives. A motor test stops when it has used up the energy reserve.
 void Controller::follow_test(protocol::Conditions found, const Settings& settings) {
   constexpr protocol::Conditions ends = condition(Fault::over_speed) | condition(Fault::host_silent);
   if ((found & ends).any()) {
@@ -328,22 +325,21 @@ void Controller::follow_test(protocol::Conditions found, const Settings& setting
     return;
   }
   --test_.remaining_periods;
-  // The product of back EMF and current is the mechanical power. Energy from the hand also counts, because the signs of
-  // motor and encoder may still be wrong. Test pulses are used to determine these signs.
+  // The product of back EMF and current is the mechanical power. The magnitude of the power is integrated, because the
+  // signs of motor and encoder may still be wrong.
   const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[test_.motor] * joint_speed_rad_per_s_[test_.motor];
   test_.moved_J += std::fabs(back_emf_V * current_A_[test_.motor]) * protocol::servo_period_s;
   if (test_.moved_J > settings.energy.reserve_J) test_.end_pulse();
 }
 
-/// Compares one joint angle per period with the angle for a stylus in the inkwell. If the arm is not referenced, the
-/// joint angle is meaningless, and the supervisor ignores this fault.
+/// Compares one joint angle per period with the joint angle in the inkwell. The supervisor ignores inkwell_implausible
+/// while the arm is not referenced.
 void Controller::check_inkwell_switch(const Settings& settings) {
   if (std::fabs(probe_.joint_rad[turn_] - settings.encoders.inkwell_rad[turn_]) > settings.limits.inkwell_play_rad)
     raise(Fault::inkwell_implausible);
 }
 
-// A lowered current limit applies to the references immediately. The current follows its reference with the delay of
-// the current loop. If the voltage is limited, the current follows its reference with the delay of the winding.
+// The over-current bound falls slowly, because the current needs time to follow a lowered limit.
 void Controller::follow_over_current(const Settings& settings) {
   const float limit_A = settings.limits.over_current_A[turn_];
   over_current_A_[turn_] = std::min(std::max(limit_A, over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
@@ -355,7 +351,7 @@ float Controller::test_limit_A(const Settings& settings) const {
                                settings.motors.ampere_per_Nm[test_.motor]);
 }
 
-// The motor resistance is unknown before a voltage test, so the current limit is checked in each period.
+// The motor resistance may be unknown in a voltage test, so the current limit is checked in each period.
 float Controller::test_voltage_V(const Settings& settings) const {
   return std::fabs(current_A_[test_.motor]) > test_limit_A(settings) ? 0.0f : test_.value();
 }
@@ -368,7 +364,7 @@ void Controller::drive_pulses(const Settings& settings) {
                                          .dead_time_part = board_.dead_time_part});
   for (std::size_t i = 0; i < 3; ++i) {
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
-    // The over-current bound exceeds the pulse current even if the motor limit is lower.
+    // The pulse current must not cause the over-current fault.
     over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::maximum_A), known_A(i));
   }
   over_current_for_A_ = {};                       // restarts follow_over_current()
@@ -383,13 +379,13 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   if (protocol::is_closed(switches_.closed, protocol::Switch::inkwell)) [[unlikely]]
     check_inkwell_switch(settings);
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
-  // Force and torques need no separate check, because the current references of all motors in use depend on them.
+  // The check of the current references includes force and torques.
   const float sum_of_all = sum(probe_.position_m) + speed_squared_m2_per_s2 + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
   protocol::Conditions found = pending_.found | condition(Fault::bridge_fault, samples.bridge_fault) |
                                condition(Fault::motor_hot, heat_.too_hot);
   protocol::Events now = pending_.events;
-  // Branches are used, because unconditional bit operations would double the cost of each check.
+  // Branches need half the cycles of unconditional bit operations.
   const auto find = [&found](Fault fault, bool is_there) {
     if (is_there) [[unlikely]]
       found |= condition(fault);
@@ -415,8 +411,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   note(Event::risen, force_gain_ == 1.0f);
   note(Event::landed, force_gain_ == 0.0f);
   note(Event::held_back, limits_ != 0);
-  // These faults void the inkwell reference even while another fault is active. The reference is not restored when the
-  // user clears a fault.
+  // Faults with voids_reference invalidate the inkwell reference, even while another fault is active.
   if ((found & protocol::voiding_conditions).any() && reference_.valid) [[unlikely]]
     forget(reference_, (found & condition(Fault::inkwell_implausible)).any());
   if (!stays_unchanged(supervisor_.state, {now, found})) [[unlikely]]
@@ -435,7 +430,7 @@ void Controller::change_state(const Supervisor& next) {
   if (next == before) return;
   const bool force_was_on = std::exchange(force_is_on_, protocol::force_is_on(next.state));
   if (force_is_on_) off_zero_periods_ = 0;
-  // A state change switches the bridges off in the same period, not one period later.
+  // The bridges must switch off in the period of the state change.
   if (!(force_was_on && force_is_on_)) {
     drive_ = {};
     force_sources_ = 0;

@@ -1,4 +1,4 @@
-// Signal path of the control interrupt, and the state of the signal path between periods.
+// Signal path of the control interrupt.
 #pragma once
 
 #include <array>
@@ -24,24 +24,23 @@
 
 namespace inkwell::control {
 
-/// All functions that change the state run in the control interrupt. In each control period, step() follows the request
-/// functions, such as settings_changed() and raise(). The last call of a period is finish(). Only the constructor,
-/// raise and start_warm are called before the control interrupt is enabled.
+/// All functions that change the state run in the control interrupt. In each control period, call the request functions
+/// first, then step(), then finish(). Only the constructor, raise and start_warm are called before the control
+/// interrupt is enabled.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board, std::uint32_t first_period = 0)
       : board_(board), periods_(first_period) {}
 
-  /// Sets the heat of the motors. Call this function before the control interrupt is enabled. Without this call the
-  /// motors count as cold.
+  /// Sets the initial heat of the motors. Without this call the motors are assumed to be cold.
   void start_warm(const Warmth& warmth) {
     heat_.heat = warmth.heat;
     heat_.housing = warmth.housing;
     heat_.too_hot = warmth.too_hot != 0;
   }
 
-  /// Runs one control period. `clock.lap()` returns the processor cycles since the previous lap as std::uint32_t. The
-  /// first lap of a period starts at the interrupt entry.
+  /// Runs one control period. `clock.lap()` returns the processor cycles since its previous call. The first call in a
+  /// period returns the cycles since the interrupt entry.
   template <class StageClock>
   Drive step(const Samples& samples, const Settings& settings, StageClock& clock) {
     condition_samples(samples, settings);
@@ -59,7 +58,7 @@ class Controller {
     return drive_;
   }
 
-  /// Completes the cycle measurement. Call this function last, after the bridges are written and the records are made.
+  /// Completes the cycle measurement. Call this function at the end of the control interrupt.
   template <class StageClock>
   void finish(StageClock& clock) {
     cycles_[report] = clock.lap();
@@ -67,10 +66,10 @@ class Controller {
     for (const std::uint32_t cycles : cycles_) servo_cycles_ += cycles;
   }
 
-  /// Call this function when the settings have changed. Changes of walls, force law, shapes and force limit are
-  /// blended. Changes of motor current limits apply immediately.
+  /// Call this function when the settings have changed. The force changes gradually if walls, force law, shapes or
+  /// force limit change. Changes of motor current limits apply immediately.
   void settings_changed() { world_changed_ = true; }
-  /// Executes a command in the next step. The link has validated the command. A command also resets the host timeout.
+  /// Executes a command in the next step. `command` must be valid. A command resets the host timeout.
   [[gnu::cold]] void carry_out(const protocol::CommandReport& command);
   /// Resets the host timeout. Call this function for every output report.
   void host_alive() { host_silence_periods_ = 0; }
@@ -86,18 +85,18 @@ class Controller {
 
   // ---- self-test ----
 
-  /// Starts a round of test pulses.
+  /// Starts the test pulses of a self-test.
   void start_pulses() { pulses_.start(); }
   bool pulses_run() const { return pulses_.runs(); }
   const PulseRound& pulse_round() const { return pulses_.round(); }
   const Triple& current_offsets_A() const { return offsets_.offset_A; }
-  /// Call this function after a self-test, unless a fault prevents the force.
+  /// Call this function if the self-test found no fault that prevents the force.
   [[gnu::cold]] void pass_self_test(const MeasuredMotors& measured);
   /// Number of self-tests since boot.
   std::uint32_t self_tests() const { return self_tests_; }
 
-  /// Writes the signals of the last step. Before finish(), the cycle counts of the last stage and of the whole
-  /// interrupt belong to the previous period.
+  /// Writes the signals of the last step. Before finish() is called, the total cycle count belongs to the previous
+  /// period.
   void write_signals(protocol::SignalValues& signals) const;
   protocol::SignalValues signals() const {
     protocol::SignalValues signals;
@@ -200,7 +199,7 @@ class Controller {
   std::array<std::uint32_t, stage_count> cycles_{};
   std::uint32_t servo_cycles_ = 0;
 
-  // Large members are declared last, so that the other members are within the offset range of an instruction.
+  // Large members are declared last to keep the offsets of the other members small.
   TouchedShapes shapes_;
   FeltForceLaw law_;
   SelfTestPulses pulses_;

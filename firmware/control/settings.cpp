@@ -109,8 +109,7 @@ HeatScale heat(const ParameterSet& set) {
 }
 
 Limits limits(const ParameterSet& set, const Triple& ampere_per_N) {
-  // The bound is above the current limit and above the sensor noise. If the board cannot measure a current at this
-  // bound, the lower bound in BoardLimits applies.
+  // A lower over-current bound would react to sensor noise.
   constexpr float over_current_minimum_A = 0.5f;
   // Margin of the joint limits for lost counts and elastic stops.
   constexpr float joint_margin_rad = 0.35f;
@@ -148,8 +147,7 @@ ProgramForceLimits program_force(const ParameterSet& set) {
           periods_in(set[Parameter::program_force_expiry_s])};
 }
 
-/// A force jump fades at 4 % of the force limit per millisecond. A change at this rate is not noticeable as a kick. A
-/// jump as large as the force limit fades in 25 ms.
+/// A force jump fades at 4 % of the force limit per millisecond. A jump of force_limit_N fades in 25 ms.
 constexpr float recovery_per_s = 0.04f * 1000.0f;
 
 /// Change of the force gain in one period. A ramp time of less than one period results in a step.

@@ -1,4 +1,4 @@
-// Parameters for the control interrupt, with precomputed products and reciprocals.
+// Settings of the control interrupt, computed from the parameters.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace inkwell::control {
 
-/// Angle = square r^2 + slope r + offset of one gimbal potentiometer.
+/// Gimbal angle = square r^2 + slope r + offset for the potentiometer reading r.
 struct GimbalCurve {
   float square_rad;
   float slope_rad;
@@ -59,8 +59,8 @@ struct Settings {
   Limits limits;
 };
 
-/// Converts a validated set of parameters to settings. The conversion contains slow divisions, so only the main loop
-/// calls it.
+/// Converts a validated set of parameters to settings. Only the main loop calls this function, because its divisions
+/// are slow.
 Settings prepare(const protocol::ParameterSet& parameters);
 
 }  // namespace inkwell::control

@@ -70,7 +70,7 @@ bool CommandQueue::push(const protocol::CommandReport& command) {
 }
 
 bool CommandQueue::waiting(protocol::Command command) const {
-  // A command that the interrupt removes during the loop may be reported as waiting. No waiting command is missed.
+  // The result may include a command that the interrupt has just removed. No waiting command is missed.
   const std::uint32_t pushed = pushed_.load();
   for (std::uint32_t i = taken_.load(); i != pushed; ++i)
     if (commands_[i % capacity].command == command) return true;

@@ -12,14 +12,14 @@
 
 namespace inkwell::link {
 
-/// Returns the command in an output report, valid or not. The report starts with its report id. Returns nothing for a
-/// wrong length, id or version.
+/// Returns the command of an output report without validation. The report starts with its report id. Returns
+/// std::nullopt for a wrong length, id or version.
 std::optional<protocol::CommandReport> whole_command(std::span<const std::byte> report);
 
-/// True if command, signals, motor, amplitude and duration are within the protocol's ranges.
+/// Returns true if command, signals, motor, amplitude and duration are within the protocol's ranges.
 bool is_valid(const protocol::CommandReport& command);
 
-/// Returns the command in an output report if the report is complete and the command is valid.
+/// Returns the command of an output report, or std::nullopt if the report is invalid.
 std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report);
 
 /// Command queue from the main loop to the control interrupt. The interrupt removes one command per control period.
@@ -29,30 +29,31 @@ class CommandQueue {
 
   // ---- main loop ----
 
-  /// True if the queue is not full.
+  /// Returns false if the queue is full.
   bool has_room() const { return pushed_.load() - taken_.load() != capacity; }
 
-  /// Queues a decoded command and records a sign of life of the host. Returns false if the queue is full.
+  /// Queues a decoded command and restarts the host timeout. Returns false if the queue is full.
   [[nodiscard]] bool push(const protocol::CommandReport& command);
 
-  /// Records a sign of life of the host without a command.
+  /// Restarts the host timeout without a command.
   void note_sign_of_life() { sign_of_life_.store(true); }
 
   /// Number of commands queued since start-up.
   std::uint32_t pushed() const { return pushed_.load(); }
-  /// True if the interrupt has removed at least this number of commands.
+  /// Returns true if the interrupt has removed at least `pushed` commands.
   bool was_taken(std::uint32_t pushed) const { return static_cast<std::int32_t>(taken_.load() - pushed) >= 0; }
 
-  /// True if a command of this kind is in the queue.
+  /// Returns true if the queue contains this command.
   bool waiting(protocol::Command command) const;
 
-  /// Discards the queued commands. Call this function when the connection to the host is lost. The next pop() returns
-  /// a stop command that the interrupt can distinguish from a stop command of the host.
+  /// Discards the queued commands. Call this function when the connection to the host is lost. The next pop() returns a
+  /// stop command, for which is_of_gone_host() is true.
   void host_gone();
 
   // ---- control interrupt ----
 
-  /// True if a command arrived since the last call. The interrupt then calls host_alive() of the controller.
+  /// Returns true if a host report arrived since the previous call. If the result is true, the interrupt calls
+  /// Controller::host_alive().
   bool take_sign_of_life() {
     const bool seen = sign_of_life_.load();
     if (seen) sign_of_life_.store(false);
@@ -62,7 +63,7 @@ class CommandQueue {
   /// Returns the command for this control period, or null. The command is valid until the interrupt returns.
   const protocol::CommandReport* pop();
 
-  /// True for the stop command of host_gone(), false for a stop command of the host.
+  /// Returns true if `command` is the stop command of host_gone().
   bool is_of_gone_host(const protocol::CommandReport& command) const { return &command == &stop_; }
 
   /// Token of the last removed command, for PoseReport::command_token.

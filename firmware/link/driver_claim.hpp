@@ -9,25 +9,25 @@
 
 namespace inkwell::link {
 
-/// Claim of at most one program. Main loop only.
+/// Only the main loop uses this class.
 class DriverClaim {
  public:
-  /// Executes a ClaimReport. Returns true if the report ended the current claim by release or takeover. A report has no
-  /// effect if it is too short, or if its version, its operation or its claim is invalid.
+  /// Executes a ClaimReport. Returns true if the report released or replaced the current claim. An invalid report has
+  /// no effect.
   bool accept(std::span<const std::byte> report, std::uint32_t now_periods);
 
-  /// True if a request with this claim is permitted. The claim must belong to the driver, or there must be no driver.
+  /// Returns true if requests with this claim are permitted. Without a driver, every claim is permitted.
   bool permits(std::uint32_t claim) const { return claim_ == 0 || claim == claim_; }
   void count_refusal() { ++refused_; }
   bool is_held() const { return claim_ != 0; }
-  /// True if the claim belongs to the driver.
+  /// Returns true if the claim belongs to the driver.
   bool is_held_by(std::uint32_t claim) const { return claim != 0 && claim == claim_; }
 
   /// Counts the seconds since the program became the driver. Call this function at least once per second.
   void pass_time(std::uint32_t now_periods);
-  /// Records a sign of life of the driver.
+  /// Restarts the claim's timeout.
   void renew(std::uint32_t now_periods) { heard_at_periods_ = now_periods; }
-  /// True if the claim has expired. Call this function at least once per wrap of the period counter.
+  /// True if the claim has expired. Call this function at least once before the period counter wraps.
   bool has_expired(std::uint32_t now_periods) const;
   /// Ends the claim. No program is the driver after this call.
   void end();

@@ -1,10 +1,9 @@
 // Data exchange between the main loop and the control interrupt.
 //
-// Each member has one producer and one consumer and never blocks the interrupt. The file
-// firmware/application/control_interrupt.cpp contains the interrupt's calls of the link.
+// Each member has one producer and one consumer and never blocks the interrupt.
 //
-// The link has about 13 KB, mostly samples, and is in the core-coupled memory. Scope frames and black-box rows are in
-// the main memory, because only the main loop accesses them.
+// The link needs about 13 KB of core-coupled memory, mostly for samples. Scope frames and black-box rows are in the
+// main memory, because only the main loop accesses them.
 #pragma once
 
 #include <cstdint>

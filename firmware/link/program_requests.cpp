@@ -26,7 +26,7 @@ Vector3 vector_of(const float (&coordinates)[3]) { return {coordinates[0], coord
 
 constexpr std::size_t longest_output_report = protocol::longest_report(protocol::ReportKind::output);
 
-/// Limit for force components, whose squares then stay finite.
+/// The squares of smaller force components are finite.
 constexpr float longest_force_N = 1e6f;
 
 Vector3 shortened(const Vector3& force_N) {
@@ -136,8 +136,7 @@ bool ProgramRequests::accept_force(std::span<const std::byte> report, bool is_of
     return false;
   }
   const std::uint32_t sequence = word_at(report, offsetof(protocol::ForceReport, sequence));
-  // Each program starts with a different sequence number. A gap above this bound is therefore not counted as lost
-  // reports.
+  // A larger gap in the sequence numbers indicates a new program, not lost reports.
   constexpr std::uint32_t longest_gap = 1000;
   if (newest_sequence_ && sequence - *newest_sequence_ - 1 < longest_gap)
     forces_lost_ += sequence - *newest_sequence_ - 1;

@@ -14,12 +14,12 @@
 
 namespace inkwell::link {
 
-/// Returns the force target of a ForceReport. The report starts with its report id and may be padded to the longest
-/// output report. Returns nothing if length, version, mode, interval or force is invalid.
+/// Returns the force target of a ForceReport. `report` starts with its report id and may have padding bytes. Returns
+/// std::nullopt if length, version, mode, interval or force is invalid.
 std::optional<control::ForceTarget> decode_force(std::span<const std::byte> report);
 
-/// Decodes a ShapesReport. Returns false if any part of the report is invalid. In this case `shapes` is undefined.
-/// Bytes after the used part of the report are ignored.
+/// Decodes a ShapesReport. Returns false if any part of the report is invalid. If the result is false, `shapes` is
+/// undefined. Bytes after the used part of the report are ignored.
 bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes);
 
 /// Returns the claim of a ForceReport or ShapesReport, or 0 if the report is too short.
@@ -34,16 +34,16 @@ class ProgramRequests {
  public:
   // ---- main loop ----
 
-  /// Accepts a ForceReport. Returns false and counts a refusal if the report is invalid or not from the driver. Also
-  /// refuses a report that answers a pose older than force_pose_age_maximum_ms. `pose_sequence` is the sequence number
-  /// of the newest pose report.
+  /// Accepts a ForceReport. Returns false and counts a refusal if the report is invalid, too old or not from the
+  /// driver. A report is too old if its pose is older than force_pose_age_maximum_ms. `pose_sequence` is the sequence
+  /// number of the newest pose report.
   bool accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence);
 
-  /// Accepts a ShapesReport of the driver. Returns `busy` while the interrupt has not accepted the previous report, and
-  /// `malformed` for an invalid report.
+  /// Accepts a ShapesReport of the driver. Returns `busy` if the interrupt has not accepted the previous report.
+  /// Returns `malformed` for an invalid report.
   protocol::RequestResult accept_shapes(std::span<const std::byte> report);
 
-  /// Removes all shapes and lets the program force fade. Call this function when the driver is gone.
+  /// Removes all shapes and lets the program force fade. Call this function after the claim has ended.
   void driver_gone();
 
   std::uint32_t forces_received() const { return forces_received_; }

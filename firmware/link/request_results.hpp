@@ -1,4 +1,4 @@
-// The results of commands and shapes, which the host reads.
+// Stores request results for RequestResultsReport.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace inkwell::link {
 
-/// Stores the newest requests that have a ticket. Only the main loop uses this class.
+/// Stores the newest requests with a ticket. Only the main loop uses this class.
 class RequestResults {
  public:
   explicit RequestResults(const CommandQueue& queue) : queue_(queue) {}
@@ -26,7 +26,7 @@ class RequestResults {
   void note_shapes(std::uint32_t ticket, protocol::RequestResult result) {
     note({ticket, protocol::ReportId::shapes, {}, result, 0}, 0);
   }
-  /// Erases all results. Call this function when the host is gone and the queued commands are discarded.
+  /// Erases all results. Call this function when the connection to the host is lost.
   void forget() { requests_ = {}; }
 
   /// `state` and `now_periods` are values of the newest control period.

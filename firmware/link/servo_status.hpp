@@ -10,13 +10,13 @@
 
 namespace inkwell::link {
 
-/// The control interrupt writes the status in each period, and the main loop reads the status.
 class ServoStatus {
  public:
   // ---- control interrupt ----
 
-  /// `motor_heat` is 1 at the continuous current. `cycles` is the length of this interrupt in processor cycles.
-  /// `late_force_reports` counts since start-up. `overrun` is true if the interrupt did not finish within its period.
+  /// `motor_heat` is 1 at the continuous current. `cycles` is the duration of this interrupt in processor cycles.
+  /// `late_force_reports` is the number of late force reports since start-up. `overrun` is true if the interrupt did
+  /// not finish within its period.
   void record(protocol::State state, const std::array<float, 3>& motor_heat, std::uint32_t cycles,
               std::uint32_t late_force_reports, bool overrun) {
     state_.store(state);

@@ -7,7 +7,7 @@
 /// in this section that no interrupt calls. All code of firmware/control is in this section and needs no marks. On a PC
 /// the mark has no effect.
 #if defined(__arm__)
-// Each function has a separate section, so that the linker can omit functions that were inlined everywhere.
+// Each function has a separate section, so that the linker can omit unused functions.
 #define INKWELL_INTERRUPT_SECTION(number) ".text.interrupt." #number
 #define INKWELL_INTERRUPT_NUMBERED(number) [[gnu::section(INKWELL_INTERRUPT_SECTION(number))]]
 #define INKWELL_INTERRUPT INKWELL_INTERRUPT_NUMBERED(__COUNTER__)

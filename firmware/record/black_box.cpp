@@ -30,26 +30,24 @@ std::uint32_t check_of(const BlackBoxNotes::Cause& cause) {
   return hash_words(hash_basis, &cause, offsetof(BlackBoxNotes::Cause, check));
 }
 
-/// Checksum of row and row number. The number distinguishes a new row from a row of an earlier run.
+/// Checksum of row and row number. The row number distinguishes new rows from rows of an earlier run.
 std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
   return hash_words(hash_basis ^ number, &row, sizeof row);
 }
 
 bool is_intact(const BlackBoxSlot& slot, std::uint32_t number) { return slot.check == check_of(slot.row, number); }
 
-/// Number of the first row that is not before the fault. Rows before the fault have smaller numbers.
+/// Number of the row at the fault. Rows before the fault have smaller numbers.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
 
-/// Returns the number of the next row before the fault. After 24 days without a fault the row number decreases by a
-/// multiple of the ring size, so that each row keeps its slot. If a reset occurs within 100 ms after the decrease, the
-/// rows before the decrease are lost.
+/// Returns the number of the next row before the fault. After 24 days without a fault, the row number decreases by a
+/// multiple of the ring size.
 std::uint32_t number_after(std::uint32_t number, std::size_t ring_size) {
   const auto size = static_cast<std::uint32_t>(ring_size);
   return number + 1 < first_number_from_fault - size ? number + 1 : size + (number + 1) % size;
 }
 
-/// Compiler barrier. If a reset interrupts a sequence of writes, no later write is in memory without the earlier
-/// writes.
+/// Compiler barrier. The compiler must not reorder writes across this call.
 void in_this_order() { std::atomic_signal_fence(std::memory_order_seq_cst); }
 
 void write(BlackBoxSlot& slot, std::uint32_t number, const Sample& sample) {
@@ -59,7 +57,7 @@ void write(BlackBoxSlot& slot, std::uint32_t number, const Sample& sample) {
   in_this_order();
 }
 
-/// Identifies the tables and the memory layout. Rows of an image with another hash are ignored.
+/// Returns the hash of the tables and the memory layout. Rows of an image with another hash are ignored.
 std::uint32_t hash_of_tables(std::size_t before, std::size_t from_fault) {
   const auto& law = control::installed_force_law;
   std::uint32_t hash =
@@ -84,7 +82,7 @@ void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
     if (!is_intact(before(number), number)) break;
     ++rows_before_;
   }
-  // The signals of the first fault are retained, together with the newest crash record.
+  // The black box retains the signals of the first fault and the newest crash record.
   if (is_kept && crash.exception != 0) {
     ++notes_.cause.later_crashes;
     notes_.cause.crash = crash;

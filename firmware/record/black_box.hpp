@@ -11,8 +11,8 @@
 
 namespace inkwell::link {
 
-/// Retained data of the black box. Start-up does not clear this memory, and its content is undefined after power-on.
-/// Cause and rows therefore have checksums. Data with a wrong checksum is ignored.
+/// Retained data of the black box. The memory content is undefined after power-on. Cause and rows therefore have
+/// checksums. Data with a wrong checksum is ignored.
 struct BlackBoxNotes {
   struct Cause {
     std::uint32_t fault;  ///< protocol::Fault
@@ -24,8 +24,8 @@ struct BlackBoxNotes {
   };
   std::uint32_t tables_hash;  ///< hash of the tables that define the rows; with another hash all data is ignored
   Cause cause;                ///< a black box exists if the checksum of this member matches
-  /// Number of rows before the fault. Only the newest rows are in the ring. The function number_after() decreases the
-  /// number before the number wraps.
+  /// Number of rows before the fault. The ring contains only the newest rows. number_after() prevents a wrap of this
+  /// number.
   std::uint32_t rows_written;
   std::uint32_t rows_added;  ///< number of rows from the fault on
 };
@@ -42,9 +42,9 @@ struct BlackBoxMemory {
   std::array<BlackBoxSlot, from_fault> line;
 };
 
-/// Only the main loop uses the black box, because the control interrupt has no spare time. The main loop reads the
-/// sample ring, records one sample in twenty, and detects the fault and its period. Rows can be missing if the main
-/// loop is late. The period numbers of the rows show missing rows.
+/// Only the main loop uses the black box, because the control interrupt has no spare time. The main loop records every
+/// twentieth sample and detects the fault. Rows can be missing if the main loop is late. The period numbers of the rows
+/// show missing rows.
 class BlackBox {
  public:
   /// The constructor does not read `memory`.
@@ -57,15 +57,15 @@ class BlackBox {
         followed_(samples.recorded()) {}
 
   /// Reads the rows of the previous run. Call this function once, before the control interrupt starts. `raised` is the
-  /// fault that start-up raises for the end of the previous run, or `none`. `crash` is the crash record of that run.
+  /// fault that start-up raises, or `none`. `crash` is the crash record of the previous run.
   void start(protocol::Fault raised, const protocol::CrashFacts& crash);
 
   /// Records the samples since the last call. Call this function in every pass of the main loop.
   void follow();
 
   protocol::BlackBoxReport report() const;
-  /// Selects the first row that rows() returns, according to a BlackBoxRequest. An invalid request changes only the
-  /// request result in rows(). Bytes after the request are ignored.
+  /// Selects the first row of rows() from a BlackBoxRequest. An invalid request changes only the request result in
+  /// rows(). Bytes after the request are ignored.
   void select_rows(std::span<const std::byte> request);
   protocol::BlackBoxRowsReport rows() const;
 
@@ -88,7 +88,7 @@ class BlackBox {
   Phase phase_ = Phase::recording;
   std::uint32_t tables_hash_ = 0;
   std::uint32_t followed_;  ///< number of samples read from the ring
-  // Numbers of valid rows of the black box.
+  // Numbers of valid rows.
   std::uint32_t rows_before_ = 0;
   std::uint32_t rows_from_fault_ = 0;
   std::uint16_t first_row_ = 0;                                         ///< requested by the host

@@ -16,7 +16,7 @@ struct BoardTime {
   std::uint32_t cycles;   ///< processor cycles since the start of that period
 };
 
-/// The main loop creates a report from the newest sample when the bus requests a report.
+/// Creates pose reports from the newest sample.
 class PoseRecorder {
  public:
   PoseRecorder(const SampleRing& samples, std::uint32_t cycles_per_period)
@@ -26,7 +26,7 @@ class PoseRecorder {
 
   // ---- control interrupt ----
 
-  /// Call this function in every period with the length of the last finished control interrupt.
+  /// Call this function in every control period.
   void note_load(std::uint32_t servo_cycles) {
     if (longest_was_sent_.load()) {
       longest_was_sent_.store(false);
@@ -38,10 +38,11 @@ class PoseRecorder {
 
   // ---- main loop ----
 
-  /// Writes the newest pose, without sequence number and driver parity. Returns false before the first period.
+  /// Writes the newest pose to `report`, without sequence number and driver parity. Returns false before the first
+  /// control period.
   bool read(protocol::PoseReport& report) const;
 
-  /// Like read(), but also resets the maximum of the interrupt length.
+  /// Calls read() and note_sent().
   bool read_for_report(protocol::PoseReport& report);
 
   /// Records that the report of read() was sent.
@@ -53,12 +54,12 @@ class PoseRecorder {
   /// Number of the newest control period, or 0 before the first period.
   std::uint32_t newest_periods() const;
 
-  /// Cycle counter at the start of the control interrupt that recorded the newest pose. Returns nothing before the
-  /// first period.
+  /// Returns the cycle counter at the start of the newest control period. Returns std::nullopt before the first control
+  /// period.
   std::optional<std::uint32_t> newest_cycles() const;
 
-  /// Converts a cycle counter value to board time. The value must be less than 12 s old. Returns nothing before the
-  /// first pose.
+  /// Converts a cycle counter value to board time. The value must be less than 12 s old. Returns std::nullopt before
+  /// the first pose.
   std::optional<BoardTime> time_of(std::uint32_t cycles) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace inkwell::link {
 
-/// Data of one control period in addition to its signals.
+/// State of the board in one control period.
 struct PeriodSummary {
   protocol::State state;
   protocol::Fault fault;
@@ -29,10 +29,10 @@ struct Sample {
 };
 
 /// The interrupt writes each sample directly into the ring, without a copy. The main loop creates pose reports, scope
-/// frames and black-box rows from the ring, at separate rates.
+/// frames and black-box rows from the ring.
 class SampleRing {
  public:
-  /// Number of samples, equivalent to 1.6 ms. The main loop is busy for less than 1 ms at a time.
+  /// Number of samples for 1.6 ms. A pass of the main loop takes less than 1 ms.
   static constexpr std::uint32_t capacity = 32;
   /// Two slots are never read, because the interrupt may write two samples while the main loop reads one sample.
   static constexpr std::uint32_t readable = capacity - 2;

@@ -4,7 +4,7 @@ namespace inkwell::link {
 
 namespace {
 
-/// Signal table columns for recording. The texts of the table are not linked into the image.
+/// Signal table columns for recording. The image does not contain the texts of the signal table.
 constexpr std::array<protocol::SignalWire, protocol::signal_count> wires = []() {
   std::array<protocol::SignalWire, protocol::signal_count> rows{};
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = protocol::signal_table[i].wire;
@@ -43,7 +43,7 @@ ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token
     plan.run_ends[run] = static_cast<std::uint8_t>(i + 1);
     size += static_cast<std::uint32_t>(protocol::wire_size(wire));
   }
-  // This rule is the same as in protocol::encoding_for(), but does not need the signal table.
+  // protocol::encoding_for() has the same rule, but needs the signal table.
   const bool full = size <= protocol::scope_full_sample_maximum;
   plan.encoding = full ? protocol::ScopeEncoding::full : protocol::ScopeEncoding::changes;
   plan.sample_size_maximum = full ? size : size + static_cast<std::uint32_t>(sizeof(std::uint32_t));

@@ -1,4 +1,4 @@
-// A selection of signals, prepared for recording with few instructions per sample.
+// Prepared selection of signals for the scope.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace inkwell::link {
 struct ScopePlan {
   std::array<std::uint8_t, protocol::scope_signals_maximum> items{};    ///< indices in SignalValues
   std::array<float, protocol::scope_signals_maximum> steps_per_unit{};  ///< for signals in 16-bit encoding
-  /// The items form alternating runs of floats and 16-bit integers. The first run has floats and may be empty. Each
-  /// entry of this array is the number of items up to the end of one run. The entry after the last run is 0.
+  /// The selected signals form alternating runs of floats and 16-bit integers. The first run has floats and may be
+  /// empty. Each entry is the end index of one run. The entry after the last run is 0.
   std::array<std::uint8_t, protocol::scope_signals_maximum + 2> run_ends{};
   std::uint32_t count = 0;                ///< 0: the scope is off
   std::uint32_t sample_size_maximum = 0;  ///< bytes, including the mask of a `changes` sample
@@ -21,7 +21,7 @@ struct ScopePlan {
   std::uint8_t token = 0;  ///< token of the select_signals command
 };
 
-/// `selection` must contain only known signals (checked by decode_command()).
+/// `selection` must contain only known signals.
 ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token);
 
 }  // namespace inkwell::link

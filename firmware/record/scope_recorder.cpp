@@ -16,8 +16,8 @@ std::int16_t to_steps(float value, float steps_per_unit) {
   return static_cast<std::int16_t>(static_cast<std::int32_t>(steps + 32768.5f) - 32768);
 }
 
-/// Initial value of `previous_` in each frame. This value differs from every signal. The value is a signaling NaN,
-/// because no computation returns this value. The value is not a sign-extended 16-bit integer.
+/// Initial value of `previous_` in each frame. This value differs from every signal. No computation returns a signaling
+/// NaN. The value is not a sign-extended 16-bit integer.
 constexpr std::uint32_t bits_of_no_value = 0x7F80'0001;
 
 template <class Value>
@@ -96,8 +96,8 @@ void ScopeRecorder::pack_oldest() {
     finish_frame();
 }
 
-// Both write functions process the plan run by run. The loop over floats needs most of the recording time. This loop
-// therefore has no branch for the encoding.
+// Both write functions process the plan run by run. The loop over floats needs most of the recording time. The loop
+// over floats therefore has no branch for the encoding.
 
 void ScopeRecorder::write_full(const protocol::SignalValues& signals) {
   std::byte* cursor = cursor_;

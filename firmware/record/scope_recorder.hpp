@@ -1,4 +1,4 @@
-// The scope packs selected signals of every control period into frames for the bulk endpoint.
+// Packs scope signals into frames for the bulk endpoint.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace inkwell::link {
 
-/// Memory for frames. This memory is large, and only the main loop accesses it.
+/// Memory for frames. Only the main loop accesses this memory.
 struct ScopeFrames {
   static constexpr std::uint32_t count = 10;
   using Frame = std::array<std::byte, protocol::scope_frame_maximum>;
@@ -21,8 +21,8 @@ struct ScopeFrames {
 };
 
 /// The main loop reads the sample ring and packs the selected signals into frames. If all frames are in use, the
-/// recorder drops the oldest finished frame and counts the dropped samples. The recorder also counts the samples that
-/// the main loop read too late. The interrupt therefore never waits, and the newest data is retained.
+/// recorder drops the oldest finished frame and counts the dropped samples. The recorder also counts overwritten
+/// samples. The interrupt therefore never waits.
 class ScopeRecorder {
  public:
   /// Largest number of samples per pass. With more than one sample per pass, the recorder can catch up after a delay of
@@ -36,7 +36,7 @@ class ScopeRecorder {
   /// frame. A new selection discards the finished frames of the previous selection.
   void select(const protocol::SignalSelection& selection, std::uint8_t token);
 
-  /// Packs the oldest unread samples, at most `samples_per_pack`. Call this function in every pass of the main loop.
+  /// Packs up to `samples_per_pack` samples. Call this function in every pass of the main loop.
   void pack();
 
   /// Returns the oldest finished frame, or an empty span. The frame does not change until release().

@@ -26,7 +26,7 @@ float resistance_ohm(const PulseRound::Motor& motor, float low_A, float high_A, 
   return step_A * shown_maximum_ohm > step_V ? step_V / step_A : shown_maximum_ohm;
 }
 
-/// Ratio of the larger value to the smaller value.
+/// Returns the ratio of the larger value to the smaller value.
 float apart(float a, float b) { return a > b ? a / b : b / a; }
 
 float mean_back_emf_V(const PulseRound::Motor& motor, const Expected& expected) {
@@ -54,8 +54,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   const float part = worse_ohm / expected.resistance_ohm;
   if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
     return {{failed_or_moved(motor, expected), worse_ohm}, {}, 0.0f};
-  // Voltage loss extrapolated to zero current. A back EMF raises the current of one sign and lowers the current of the
-  // other sign, so the effect of the back EMF cancels out.
+  // Voltage loss extrapolated to zero current. The mean over both current signs cancels the effect of a back EMF.
   const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);
   const bool is_slow = bridge_V > PulseJudgement::dead_time_ratio * expected.dead_V;
   const bool is_kept = apart(forward_ohm, backward_ohm) < PulseJudgement::kept_apart &&
@@ -65,7 +64,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
           is_kept ? 0.5f * (forward_ohm + backward_ohm) : 0.0f};
 }
 
-/// Evaluates the currents that the pulses of one motor cause in the sensors of the other motors.
+/// Evaluates the currents in the sensors of the other motors.
 Found judge_wires(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
   if (!motor.takes_part) return {Result::no_part};
   float foreign_A = 0.0f;
@@ -76,7 +75,7 @@ Found judge_wires(const PulseRound::Motor& motor, std::size_t own, const Expecte
   return {is_insulated ? Result::passed : failed_or_moved(motor, expected), foreign_A};
 }
 
-/// Combines two results of one item. A failure has precedence, then `moved`, then the larger figure.
+/// Combines two results of one item. The order of precedence is failure, `moved`, larger figure.
 Found worse(const Found& a, const Found& b) {
   const auto rank = [](Result result) {
     return result == Result::failed ? 3 : result == Result::moved ? 2 : result == Result::passed ? 1 : 0;

@@ -10,26 +10,25 @@
 namespace inkwell::link {
 
 struct PulseJudgement {
-  /// Limits relative to the expected resistance. The resistance of a winding is 39 % higher at +100 K, and 10 % lower
-  /// at the freezing point. Switches and shunt add 4 %. The sensor error is 3 %, and the motion of the motor
-  /// contributes 5 %.
+  /// Limits relative to the expected resistance. The winding resistance changes by +39 % at +100 K, and by -10 % at 0
+  /// C. Switches and shunt add 4 %. Sensor errors contribute 3 %, and motor motion contributes 5 %.
   ///
-  /// With half the winding turns, or with twice the amplifier gain, the measured resistance is below these limits at
-  /// any temperature. With half the amplifier gain, the measured resistance is above these limits.
+  /// Half the winding turns or twice the amplifier gain lowers the measured resistance below the lower limit at any
+  /// temperature. Half the amplifier gain raises the measured resistance above the upper limit.
   static constexpr float resistance_minimum_part = 0.78f, resistance_maximum_part = 1.7f;
-  /// Largest reported resistance, relative to the expected resistance. This value is reported for a motor without
-  /// current or with a current of the wrong sign.
+  /// Largest reported resistance, relative to the expected resistance. This value means no current or a current of the
+  /// wrong sign.
   static constexpr float resistance_shown_part = 10.0f;
   /// Largest voltage loss of a bridge, relative to the loss from its dead time.
   static constexpr float dead_time_ratio = 1.8f;
   /// Largest current in the sensor of an idle motor, relative to the current of the pulsed motor. Two touching wires
   /// share the current evenly.
   static constexpr float foreign_part = 0.25f;
-  /// Above this mean back EMF the arm moves, so a resistance outside its limits does not count as a failure.
+  /// A higher mean back EMF indicates a moving arm, for which a wrong resistance is not a failure.
   static constexpr float moves_V = 0.15f;
-  /// Stricter limits for a stored resistance. The resistances for both current signs must agree within the factor
-  /// `kept_apart`, and the mean back EMF must be below `rests_V`. If no hand fixes the arm, the pulses accelerate the
-  /// motor, and the measured resistance is 5 % too high.
+  /// Stricter limits for a stored resistance. The resistances for both current signs may differ by the factor
+  /// `kept_apart`. The mean back EMF must be below `rests_V`. On a freely moving arm, the measured resistance is 5 %
+  /// too high.
   static constexpr float kept_apart = 1.06f, rests_V = 0.08f;
 
   using Result = protocol::SelfTestResult;
@@ -40,14 +39,13 @@ struct PulseJudgement {
   std::array<Found, 3> motors;   ///< resistance in ohm, for the current sign with the larger error
   std::array<Found, 3> bridges;  ///< voltage loss of the bridge in V
   Found wires;                   ///< largest current in the sensor of another motor, in A
-  /// Voltage loss of a bridge without a failure, relative to the supply voltage. The value is 0 if the measured loss is
-  /// negative.
+  /// Voltage loss of a healthy bridge, relative to the supply voltage. The value is 0 if the measured loss is negative.
   control::Triple bridge_loss_part;
-  /// Mean resistance for both current signs, if the motor passes the test and is at rest. Otherwise the value is 0.
+  /// Mean resistance for both current signs. The value is 0 for a moving motor or after a failure.
   control::Triple resistance_ohm;
 
   bool any(Result result) const;
-  /// Returns the result for an arm that moved too fast for pulses.
+  /// Returns the result for a moving arm.
   static PulseJudgement moved();
 };
 

@@ -27,8 +27,8 @@ bool retains_pattern(std::span<Word> memory) {
   return is_intact;
 }
 
-/// Like retains_pattern(memory), but restores the content of the memory. The size of the buffer `room` limits the words
-/// per step.
+/// Tests the memory like retains_pattern(memory) and restores the memory content. The size of the buffer `room` limits
+/// the words per step.
 template <class Word>
 bool retains_pattern(std::span<Word> memory, std::span<std::uint32_t> room) {
   bool is_intact = true;

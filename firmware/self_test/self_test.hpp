@@ -1,5 +1,4 @@
-// Sequence of the self-test, from the RAM test to the result. The main loop controls the self-test, and the control
-// interrupt sends the pulses.
+// Sequence of the self-test. The main loop controls the self-test, and the control interrupt sends the pulses.
 #pragma once
 
 #include <array>
@@ -20,12 +19,12 @@ class SelfTest {
   using Item = protocol::SelfTestItem;
   using Result = protocol::SelfTestResult;
 
-  /// A wire is not driven if it follows its pull resistor in this number of consecutive checks. In fewer checks, the
-  /// level of a moving encoder could match the pull resistor by chance.
+  /// Number of consecutive checks in which an undriven wire must follow its pull resistor. With fewer checks, a moving
+  /// encoder could match the pull resistor by chance.
   static constexpr std::uint32_t wire_readings = 8;
   /// An item has failed after this number of failures with the arm at rest.
   static constexpr std::uint32_t failures_to_believe = 2;
-  /// Largest number of rounds, and waiting time before each round, for a moving arm.
+  /// Largest number of pulse rounds for a moving arm.
   static constexpr std::uint32_t rounds_maximum = 8;
   static constexpr std::uint32_t rest_patience_periods = control::periods_in(0.02f);
   /// Largest back EMF at the start of a round. At a higher speed the bridges would brake the arm perceptibly.
@@ -33,8 +32,7 @@ class SelfTest {
   /// Invalid range at each end of a potentiometer track, relative to the track length. A healthy wiper never enters
   /// this range.
   static constexpr float gimbal_rail_part = 0.01f;
-  /// The current sensors are read after 1.2 ms, twelve time constants of a motor. After this time the current of an
-  /// earlier pulse has decayed.
+  /// After this time (12 motor time constants), the current of an earlier pulse has decayed.
   static constexpr std::uint32_t off_periods = control::periods_in(0.0012f), offset_readings = 16;
 
   explicit SelfTest(const SampleRing& samples) : samples_(samples) {}
@@ -44,12 +42,12 @@ class SelfTest {
   /// Records the result of a start-up test.
   void note(Item item, bool has_passed, float figure = 0.0f) { note(item, result_of(has_passed), figure); }
 
-  /// Returns the wire to be tested, if any. The bridges are off during this test.
+  /// Returns the wire for the next test, if any. The bridges are off during this test.
   std::optional<Item> wanted_wire() const;
   /// Records whether the level of the wire followed the pull resistors of its pin.
   void note_wire(bool follows);
 
-  /// True while follow() must be called. Check this condition in every pass of the main loop.
+  /// Returns true while follow() must be called. Call this function in every pass of the main loop.
   bool goes_on() const { return phase_ != Phase::idle || begun_.load() != test_; }
 
   /// Converter readings at the start of the self-test.
@@ -99,8 +97,7 @@ class SelfTest {
   control::Triple offset_A_{};                      ///< sensor offsets measured at start-up
   control::MeasuredMotors measured_{};  ///< results of the rounds; read by the interrupt after the order `pass`
 
-  /// Order for the interrupt. The order includes the number of the self-test. The value is 0 after the interrupt has
-  /// executed the order.
+  /// Request to the interrupt, with the self-test number. The interrupt resets the request to 0.
   Shared<std::uint32_t> order_{0};
   Shared<std::uint32_t> begun_{0};     ///< number of the current or last self-test of the interrupt
   Shared<bool> round_is_over_{false};  ///< the main loop may read the results until the next order

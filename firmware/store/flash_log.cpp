@@ -99,7 +99,7 @@ void FlashLog::choose_current() {
   current_ = second_is_newer || (first_is_useless && is_usable(1)) ? 1 : 0;
 }
 
-/// True if the sector contains no records. A sector header is permitted.
+/// Returns true if the sector has no records. The sector may have a header.
 bool FlashLog::is_usable(std::size_t number) const {
   const Sector& sector = sectors_[number];
   return !erase_is_open_[number] && sector.end <= (sector.is_begun ? sector_head_words : 0);
@@ -115,7 +115,7 @@ void FlashLog::make_room() {
   if (!is_usable(other())) erase(other());
 }
 
-// A failed write of the erase record is ignored, because the erase is necessary in any case.
+// The erase continues even if the erase record cannot be written.
 void FlashLog::erase(std::size_t number) {
   const std::uint32_t erases = ++erases_[number];
   const std::size_t other_sector = 1 - number;

@@ -1,16 +1,15 @@
-// Log of records in two flash sectors. The newest complete record is valid. A power loss during any write or erase
-// leaves either the previous record or the new record valid.
+// Log of records in two flash sectors. The newest complete record is valid. After a power loss during any write or
+// erase, the previous or the new record is valid.
 //
 // A sector begins with five words: magic, sequence number, erase count of this sector, erase count of the other sector,
 // and CRC. The records follow this sector header. A record consists of a header of seven words (RecordHead), a payload,
 // and the CRC of header and payload. The CRC is written last. A record with a wrong CRC is skipped, and its space is
 // lost until the sector is erased.
 //
-// After start-up, words are programmed but no sector is erased. New records are written to the sector of the newest
-// record. When this sector is full, new records are written to the other sector if that sector is erased. Only start()
-// erases a sector. If the next sector to write is not empty, start() erases this sector. Before the erase, start()
-// writes an erase record to the other sector. An interrupted erase is therefore repeated and counted, even if the
-// sector already reads as erased.
+// New records are written to the sector of the newest record. If the sector is full, new records are written to the
+// other sector. Only start() erases a sector. If the sector for the next record is not empty, start() erases this
+// sector. Before the erase, start() writes an erase record to the other sector. An interrupted erase is therefore
+// repeated and counted, even if the sector already reads as erased.
 #pragma once
 
 #include <array>
@@ -50,7 +49,7 @@ struct RecordHead {
 };
 inline constexpr std::size_t record_head_words = sizeof(RecordHead) / sizeof(std::uint32_t);
 
-/// Returns the number of words of a record with a payload of this size.
+/// Returns the record size in words.
 constexpr std::size_t record_words(std::size_t payload) { return record_head_words + payload + 1; }
 
 class FlashLog {
@@ -61,7 +60,7 @@ class FlashLog {
   };
   enum class Progress : std::uint8_t { under_way, done, failed };
 
-  /// Reads both sectors. Erases one sector if the next record may need this sector and the sector is not empty.
+  /// Reads both sectors. Erases one sector if necessary.
   void start(FlashMemory& memory);
 
   /// Returns the newest complete record that is not an erase record.
@@ -69,13 +68,13 @@ class FlashLog {
   /// Number of records over the life of the board.
   std::uint32_t records_written() const { return last_number_; }
   const std::array<std::uint32_t, protocol::store_sectors>& erases() const { return erases_; }
-  /// Returns the remaining space as a number of records with a payload of this size.
+  /// Returns the remaining space in records of this payload size.
   std::size_t room(std::size_t payload) const;
 
   /// Starts writing a record. The caller sets all members of `head` except magic, number and payload. Returns false if
   /// there is no space. `payload` must remain valid until step() returns `done` or `failed`.
   [[nodiscard]] bool begin(RecordHead head, std::span<const std::uint32_t> payload);
-  /// Programs one word of the record. After a failure, newest() still returns the previous record.
+  /// Programs one word of the record. After a failure, newest() returns the previous record.
   Progress step();
 
  private:

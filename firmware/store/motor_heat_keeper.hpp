@@ -9,16 +9,16 @@
 
 namespace inkwell::link {
 
-/// The object is in memory that start-up does not clear, so it has no constructor. The content of this memory is
-/// undefined after power-on. A restart may interrupt a write at any word, so two slots are written alternately. One of
-/// the slots is always complete.
+/// Start-up does not initialize the object, so the class has no constructor. The content of the object is undefined
+/// after power-on. A restart may interrupt a write at any word, so two slots are written alternately. One of the slots
+/// is always complete.
 class MotorHeatKeeper {
  public:
   /// Largest stored heat.
   static constexpr float most = 4.0f;
 
-  /// Returns the last motor heat of the previous run. Returns nothing after power-on, or if no slot is valid. Call this
-  /// function before all other functions of this class.
+  /// Returns the last motor heat of the previous run. Returns std::nullopt after power-on and if no slot is valid. Call
+  /// this function before all other functions of this class.
   std::optional<control::Warmth> start(bool after_power_on);
   /// Stores the motor heat in the older slot.
   void store(const control::Warmth& warmth);

@@ -19,7 +19,7 @@ using protocol::ParameterKind;
 using protocol::ParameterSet;
 using protocol::Refusal;
 
-/// Parameter table columns for the check. The texts of the table are not linked into the image.
+/// Parameter table columns for the check. The image does not contain the texts of the parameter table.
 struct Limits {
   std::uint16_t id;
   bool whole;

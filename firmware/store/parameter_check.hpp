@@ -1,4 +1,4 @@
-// Checks a parameter transaction before any of its values take effect.
+// Checks a parameter transaction before the values take effect.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class StoredSet {
  public:
   StoredSet() : set_(image_defaults()) {}
   void put(std::size_t index, float value);
-  /// Replaces two bounds by their defaults if they contradict each other. Call this function after the last put().
+  /// Replaces contradicting bounds by their defaults. Call this function after the last put().
   void make_consistent();
   /// Number of values replaced by their default.
   std::uint16_t refused() const { return refused_; }

@@ -11,7 +11,7 @@ bool ParameterStore::settings_are_intact() const {
   return settings_.is_offered() || sum_of(settings_.used()) == settings_sum_;
 }
 
-// A new set does not replace a damaged set, because the replacement would hide the damage from the background check.
+// A damaged set is not replaced, so that the background check detects the damage.
 control::Settings* ParameterStore::next_settings_slot() { return values_.is_intact() ? settings_.next() : nullptr; }
 
 void ParameterStore::offer(control::Settings& slot, const protocol::ParameterSet& set) {

@@ -1,5 +1,5 @@
-// Parameter sets. The main loop checks and prepares a parameter set. The control interrupt accepts the set as a whole
-// at the start of a control period.
+// Parameter sets. The main loop checks and prepares a parameter set. The control interrupt accepts a complete set at
+// the start of a control period.
 #pragma once
 
 #include <cstddef>
@@ -30,11 +30,11 @@ class ParameterStore {
 
   // ---- main loop ----
 
-  /// Checks a ParametersReport. If the report is valid, offers its settings to the interrupt. A refused report changes
+  /// Checks a ParametersReport and offers the settings of a valid report to the interrupt. A refused report changes
   /// only result(). `stored` is the parameter set for restore_stored, or null.
   ///
-  /// Returns `busy` while the interrupt has not accepted the previous transaction. Also returns `busy` for every report
-  /// if a bit of a parameter set has flipped. The background check reports the flipped bit as a fault.
+  /// Returns `busy` while the interrupt has not accepted the previous transaction. Returns `busy` if a bit of a
+  /// parameter set has flipped.
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
                            const Guarded<protocol::ParameterSet>* stored = nullptr);
 
@@ -55,11 +55,11 @@ class ParameterStore {
   const protocol::ParameterSet& values() const { return values_.value(); }
   /// Values with their checksum.
   const Guarded<protocol::ParameterSet>& guarded_values() const { return values_; }
-  /// True if no bit of the accepted values has flipped.
+  /// Returns true if no bit of the accepted values has flipped.
   bool values_are_intact() const { return values_.is_intact(); }
 
-  /// True if no bit of the interrupt's settings has flipped. The settings are not checked while a transaction is
-  /// waiting for the interrupt.
+  /// Returns true if no bit of the interrupt's settings has flipped. The settings are not checked while a transaction
+  /// is waiting for the interrupt.
   bool settings_are_intact() const;
 
   // ---- control interrupt ----

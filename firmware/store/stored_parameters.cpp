@@ -33,8 +33,8 @@ bool are_equal(const ParameterSet& one, const ParameterSet& other) {
 
 bool belongs_to_a_law(std::uint32_t id) { return id >= protocol::force_law_first_id; }
 
-/// Returns the index of a stored entry's parameter in this image. A parameter of another force law has no index, even
-/// if its id is known.
+/// Returns the index of a stored parameter in this image. A parameter of another force law has no index, even if its id
+/// is known.
 std::optional<std::size_t> known_index(std::uint32_t id, bool same_law) {
   if (id > 0xFFFF || (!same_law && belongs_to_a_law(id))) return std::nullopt;
   return image_parameter_index(static_cast<std::uint16_t>(id));
@@ -114,7 +114,7 @@ void StoredParameters::follow(ParameterStore& parameters, bool force_is_on, std:
   if (!is_busy() && result_ == StoreResult::under_way) result_ = result_of_reset_;
 }
 
-// An incomplete record in flash is ignored. The next start executes a recorded factory reset.
+// An incomplete record in flash is ignored. A factory reset in the flash takes effect at the next start.
 void StoredParameters::give_up() {
   wanted_ = Wanted::nothing;
   is_writing_ = is_resetting_ = false;
@@ -153,7 +153,7 @@ RecordHead StoredParameters::head(RecordKind kind) const {
 }
 
 /// Writes the parameters of this image, followed by the unknown entries of the newest record. Entries of another force
-/// law are omitted, because the ids of the two force laws overlap.
+/// law are omitted, because the ids of force laws overlap.
 std::size_t StoredParameters::put_entries(const ParameterSet& held) {
   std::size_t count = 0;
   auto& payload = payload_.open();

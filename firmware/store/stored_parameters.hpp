@@ -1,5 +1,5 @@
 // Stored parameters. The firmware reads the stored parameters before the control interrupt starts. A command writes the
-// stored parameters, one word per pass of the main loop, and never while the force is on.
+// parameters while the force is off, one word per pass of the main loop.
 #pragma once
 
 #include <array>
@@ -25,19 +25,19 @@ class StoredParameters {
   /// Requests store_parameters or factory_reset. `may` is true if the command is allowed.
   void ask(protocol::Command command, bool may);
   /// Executes one step of the requested command. If a bit of the command's data has flipped, the command fails with
-  /// flash_failed, and the background check reports the damage.
+  /// flash_failed.
   ///
-  /// A step may block the main loop while the flash programs one word. `periods` is the number of the control period.
-  /// This number is used to separate the words in time, so that poses are not delayed.
+  /// A step may block the main loop while the flash programs one word. Writes are spread over time, so that poses are
+  /// not delayed.
   void follow(ParameterStore& parameters, bool force_is_on, std::uint32_t periods);
-  /// True while a requested command is not finished.
+  /// Returns true while a requested command is not finished.
   bool is_busy() const { return wanted_ != Wanted::nothing || is_writing_ || is_resetting_; }
 
-  /// The parameter values after the next start.
+  /// Returns the parameter values after the next start.
   const protocol::ParameterSet& next_start() const { return set_.value(); }
-  /// The parameter set for restore_stored, or null.
+  /// Returns the parameter set for restore_stored, or null.
   const Guarded<protocol::ParameterSet>* restorable() const { return has_parameters() ? &set_ : nullptr; }
-  /// True if no bit of the stored data has flipped.
+  /// Returns true if no bit of the stored data has flipped.
   bool is_intact() const { return set_.is_intact() && writing_.is_intact() && payload_.is_intact(); }
   bool has_parameters() const { return contents_ == protocol::StoreContents::parameters; }
   protocol::StoreReport report(const protocol::ParameterSet& held) const;
@@ -48,7 +48,7 @@ class StoredParameters {
   static constexpr std::uint32_t periods_between_words = 10;
 
   enum class Wanted : std::uint8_t { nothing, store, factory_reset };
-  /// Largest number of entries in a record: the parameters of this image, and parameters of other firmware versions.
+  /// Largest number of entries in a record, including parameters of other firmware versions.
   static constexpr std::size_t entries_maximum = protocol::parameter_entries_maximum + 32;
 
   void load(ParameterStore& parameters);

@@ -50,8 +50,7 @@ bool update_reference(InkwellReference& reference, const std::array<std::int32_t
     const std::int32_t moved = encoder_counts[i] - reference.rest_counts[i];
     still = still && moved <= InkwellReference::still_counts && moved >= -InkwellReference::still_counts;
   }
-  // After a reference is stored, the rest time stays at its maximum until the switch is read as open. Each insertion of
-  // the stylus thus stores one reference.
+  // The stylus must leave the inkwell before another reference is stored.
   const bool taken = inkwell_closed && reference.rested_periods > InkwellReference::still_periods;
   if (taken) return false;
   if (!still) {

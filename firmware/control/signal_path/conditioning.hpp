@@ -1,4 +1,4 @@
-// Conditioning of raw samples: current sensor offsets, supply filter, switches, inkwell reference.
+// Conditioning of raw samples.
 #pragma once
 
 #include <array>
@@ -19,8 +19,7 @@ constexpr std::uint32_t periods_in(float time_s) {
 /// Mean reading of the current sensors while the bridges are off.
 struct CurrentOffsets {
   static constexpr std::uint32_t duration_periods = periods_in(0.1f);
-  /// A healthy amplifier with a 1 % reference has an offset below 0.1 A. An offset above this bound indicates a broken
-  /// sensor.
+  /// An offset above this bound indicates a broken sensor.
   static constexpr float plausible_A = 0.25f;
   /// Waiting time after the bridges are switched off. Winding currents decay within this time.
   static constexpr std::uint32_t patience_periods = periods_in(0.01f);
@@ -33,7 +32,7 @@ struct CurrentOffsets {
   bool measured() const { return periods >= duration_periods; }
 };
 
-/// Adds one reading. The offsets and their plausibility are valid once measured() is true.
+/// Adds one reading. The offsets are valid when measured() returns true.
 [[gnu::cold]] void measure_offsets(CurrentOffsets& offsets, const Triple& current_A);
 
 // ---- supply --------------------------------------------------------------------------------------------
@@ -42,8 +41,7 @@ struct CurrentOffsets {
 /// duty cycles.
 struct SupplyFilter {
   static constexpr float weight = 1.0f / 32.0f;
-  /// Lower bound of the filtered voltage. The bound keeps the reciprocal finite if the supply is off. The bound is far
-  /// below any voltage at which the bridges may be on.
+  /// Lower bound of the filtered voltage. The bound keeps the reciprocal finite if the supply is off.
   static constexpr float floor_V = 1.0f;
   static constexpr std::uint32_t stale_periods = periods_in(protocol::samples_stale_s);
 
@@ -56,7 +54,7 @@ void filter_supply(SupplyFilter& filter, float sample_V);
 
 // ---- switches ------------------------------------------------------------------------------------------
 
-/// Accepts a switch level that has not changed for 5 ms. One switch is filtered per control period.
+/// A new switch level must last 5 ms. One switch is filtered per control period.
 struct SwitchFilter {
   static constexpr std::uint32_t settle_periods = periods_in(0.005f);
   static constexpr std::size_t count = protocol::switch_count;
@@ -65,18 +63,18 @@ struct SwitchFilter {
   std::array<std::uint8_t, count> changed_readings{};  ///< consecutive readings that differ from `closed`
 };
 
-/// `turn` is the switch of this period, 0..SwitchFilter::count - 1.
+/// `turn` is the index of the switch to filter.
 void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn);
 
 // ---- inkwell -------------------------------------------------------------------------------------------
 
-/// Encoder counts while the stylus is in the inkwell. Joint angles are computed relative to these counts.
+/// Encoder counts while the stylus is in the inkwell. Joint angles are computed relative to the inkwell counts.
 struct InkwellReference {
   static constexpr std::uint32_t still_periods = periods_in(0.1f);
-  /// Largest change of the encoder count at a stationary arm.
+  /// Largest encoder change of a stationary arm.
   static constexpr std::int32_t still_counts = 1;
-  /// Beyond this distance from the inkwell, the stylus cannot close the inkwell switch. The switch closes shortly
-  /// before the stylus is at rest. When a hand pulls the stylus out, debouncing reports the open switch 5 ms late.
+  /// Beyond this distance from the inkwell, the stylus cannot close the inkwell switch. The distance includes the
+  /// travel of the stylus during debouncing.
   static constexpr float play_m = 0.02f;
 
   std::array<std::int32_t, 3> counts{};       ///< encoder counts since power-on, with the stylus in the inkwell
@@ -85,17 +83,16 @@ struct InkwellReference {
   bool valid = false;
 };
 
-/// After this call, the stylus must be inserted again. If `switch_in_doubt` is true, the switch must first be read as
-/// open.
+/// After this call, the arm is unreferenced until the stylus is in the inkwell again. If `switch_in_doubt` is true, the
+/// inkwell switch must first open.
 constexpr void forget(InkwellReference& reference, bool switch_in_doubt) {
   reference.counts = {};
   reference.rested_periods = switch_in_doubt ? InkwellReference::still_periods + 1 : 0;
   reference.valid = false;
 }
 
-/// Stores the present counts as the inkwell reference after the switch has been closed and the arm has been stationary
-/// for 0.1 s. Each insertion of the stylus stores one reference. Returns true in the period in which the reference is
-/// stored.
+/// Stores the inkwell reference after the arm has been stationary in the inkwell for 0.1 s. Each insertion of the
+/// stylus stores one reference. Returns true if this call stored a reference.
 bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,
                       bool inkwell_closed);
 

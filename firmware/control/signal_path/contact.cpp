@@ -12,7 +12,7 @@ Contact find_contact(const Vector3& probe_m, const Box& box) {
 }
 
 Force bounded(Vector3 force_N, float limit_N) {
-  // Below 1 uN the force direction is undefined, and the argument of the reciprocal square root would be out of range.
+  // Below 1 uN the force has no reliable direction.
   constexpr float smallest_squared_N2 = 1e-12f;
   const float squared_N2 = dot(force_N, force_N);
   if (squared_N2 < smallest_squared_N2) return {};

@@ -1,8 +1,8 @@
 // Current control of one motor: PI controller with anti-windup (paper, section 3.5, after Eq. 15).
 //
 // The controller zero at R/L cancels the electrical pole of the motor. The integral gain is therefore R times the
-// desired bandwidth, and the proportional gain is L times this bandwidth. The integral uses the trapezoidal rule. At 50
-// us and L/R = 109 us, a rectangular rule would move the discrete zero away from the pole.
+// desired bandwidth, and the proportional gain is L times this bandwidth. The integral uses the trapezoidal rule. A
+// rectangular rule would move the controller zero away from the motor pole.
 #pragma once
 
 #include "firmware/control/signal_path/vector.hpp"
@@ -30,8 +30,8 @@ struct VoltageRange {
   float least_V, most_V;
 };
 
-/// Computes the voltage for the next period, within `range`. While the voltage is at a bound of the range, the integral
-/// does not change towards this bound.
+/// Computes the voltage for the next period, within `range`. The integral does not change while it would drive the
+/// voltage beyond `range`.
 CurrentLoopStep regulate(const CurrentLoop& loop, float reference_A, float current_A, const CurrentLoopGains& gains,
                          const VoltageRange& range);
 

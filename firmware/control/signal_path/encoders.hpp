@@ -9,9 +9,9 @@
 
 namespace inkwell::control {
 
-/// Extends the count of a wrapping 16-bit or 32-bit timer. Returns the count nearest to `unwrapped` whose lower bits
-/// are equal to `timer_count`. The result is valid if the timer changes by less than half its range between two calls.
-/// For 16 bits and 50 us, this limit corresponds to 100 times the speed of the fastest arm.
+/// Extends the count of a wrapping 16-bit or 32-bit timer. Among all counts with the lower bits `timer_count`, returns
+/// the count nearest to `unwrapped`. The result is valid if the timer changes by less than half its range between two
+/// calls.
 template <class TimerCount>
 constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   static_assert(std::is_unsigned_v<TimerCount> && sizeof(TimerCount) <= 4);
@@ -20,8 +20,8 @@ constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(unwrapped) + static_cast<std::uint32_t>(step));
 }
 
-/// Returns a value other than 0 if an encoder moved by `jump_counts` (EncoderScale) or more. For backward motion the
-/// bound is one count higher.
+/// Returns a nonzero value if an encoder moved by at least EncoderScale::jump_counts. For backward motion the bound is
+/// one count higher.
 constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const std::array<std::int32_t, 3>& now,
                               std::uint32_t jump_counts) {
   std::uint32_t all = 0;
@@ -33,12 +33,12 @@ constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const s
 struct EncoderScale {
   Triple rad_per_count;  ///< negative if the encoder counts down as its joint turns forward
   Triple inkwell_rad;    ///< joint angles while the stylus is in the inkwell
-  /// Count change per control period that indicates an encoder jump. The value is equivalent to at least 100 rad/s,
-  /// which no joint reaches. The value is a power of two, so that one test covers all three encoders.
+  /// Smallest count change of an encoder jump in one control period. No joint is faster than 100 rad/s. The value is a
+  /// power of two, so that one test covers all three encoders.
   std::uint32_t jump_counts;
 };
 
-/// Joint angles for encoder counts relative to the inkwell reference (paper, section 3.1).
+/// Returns the joint angles (paper, section 3.1).
 constexpr Triple joint_angles(const std::array<std::int32_t, 3>& counts_since_inkwell, const EncoderScale& scale) {
   Triple joint_rad{};
   for (std::size_t i = 0; i < 3; ++i)

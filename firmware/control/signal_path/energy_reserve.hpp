@@ -1,12 +1,10 @@
 // Passivity observer for the whole device. The observer reduces the force in order to limit the energy that the arm
 // delivers.
 //
-// Walls, shapes and dampers return less energy than the hand puts into them. A program that pushes along the motion, a
-// wrong force law or an oscillating loop could deliver energy indefinitely. The observer integrates the force over the
-// measured motion of the probe to obtain the delivered energy. The method is from Hannaford and Ryu, "Time-domain
-// passivity control of haptic interfaces", 2002. The remaining energy has a lower bound and an upper bound. Even after
-// a long press into a wall, the force delivers at most the energy reserve to the hand. In addition, a small power may
-// be delivered continuously.
+// Walls, shapes and dampers return less energy than the hand supplies. A wrong force law or an unstable program could
+// deliver energy indefinitely. The delivered energy is the integral of the force over the measured probe motion. The
+// method is from Hannaford and Ryu, "Time-domain passivity control of haptic interfaces", 2002. Energy from the hand
+// refills the reserve only up to `reserve_J`. A small continuous power refills the reserve.
 #pragma once
 
 #include "firmware/control/signal_path/vector.hpp"
@@ -20,8 +18,8 @@ struct EnergyLimits {
 };
 
 struct EnergyReserve {
-  /// Below this part of the reserve, the driving component of the force is reduced. If the reserve is empty, the
-  /// driving component is removed.
+  /// Below this fraction of the reserve, the force component along the motion is reduced. With an empty reserve, the
+  /// force component along the motion is zero.
   static constexpr float low_part = 0.25f;
   /// Below this speed the motion of the probe has no reliable direction.
   static constexpr float slow_m_per_s = 0.02f;
@@ -30,12 +28,12 @@ struct EnergyReserve {
   Vector3 position_m;  ///< position of the probe in the previous period
 };
 
-/// Advances by one control period. Subtracts the work of the previous period's force, `felt_N`, on the path to
-/// `position_m`. Adds the energy that may be delivered in each period.
+/// Advances by one control period. Subtracts the work of the force `felt_N` on the path to `position_m`. Adds
+/// `refill_J_per_period`.
 void update_energy(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m,
                    const EnergyLimits& limits);
 
-/// Returns the remaining energy, relative to the bound below which the force is reduced.
+/// Remaining energy divided by the energy below which the force is reduced.
 inline float part_left(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return reserve.left_J * limits.low_reserves_per_J;
 }
@@ -43,12 +41,12 @@ inline bool is_low(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return part_left(reserve, limits) < 1.0f;
 }
 
-/// Fraction of the driving force component to remove, 0..1.
+/// Returns the fraction (0..1) by which the force component along the motion is reduced.
 inline float driving_reduction(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return is_low(reserve, limits) ? 1.0f - part_left(reserve, limits) : 0.0f;
 }
 
-/// Removes `part` of the driving component from the force.
+/// Reduces the force component along the motion by the fraction `part`.
 [[gnu::cold]] Vector3 without_drive(const Vector3& force_N, float power_W, const Vector3& velocity_m_per_s, float part);
 
 }  // namespace inkwell::control

@@ -1,4 +1,4 @@
-// State and time of the installed force law between periods.
+// State and run time of the installed force law.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@ class FeltForceLaw {
  public:
   FeltForceLaw() { reset_force_law(memory_); }
 
-  /// Runs one period of the law and sets the time of `probe`. The force may be infinite or not a number.
+  /// Sets `probe.periods` and runs one period of the law. The returned force may be infinite or NaN.
   const Vector3& force_N(Probe& probe, const ForceLawValues& values) {
     probe.periods = periods_++;
     step_force_law(probe, values, memory_, force_N_);
     return force_N_;
   }
 
-  /// Call this function in each period in which the law does not run. The law then restarts from its initial state.
+  /// Call this function in each period in which the law does not run. The law restarts from its initial state after
+  /// this call.
   void reset() {
     if (periods_ != 0) reset_force_law(memory_);
     periods_ = 0;

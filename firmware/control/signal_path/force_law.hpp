@@ -3,12 +3,12 @@
 //
 // A law is a struct in inkwell::force_laws. The struct has the name of its file and the following members.
 //
-//   `Parameters`   contains floats with rows in `parameter_rows`, and may be empty.
-//   `Signals`      contains floats with rows in `signal_rows`, and may be empty.
+//   `Parameters`   has one float for each row of `parameter_rows`.
+//   `Signals`      has one float for each row of `signal_rows`.
 //   `State`        contains the state between control periods.
-//   `force_N`      returns the force on the hand, 20 000 times per second while the force is on.
+//   `force_N`      returns the force on the hand, at 20 kHz while the force is on.
 //
-// A law uses only its arguments, so a test on the PC can run the same code as the control interrupt.
+// A law uses only its arguments, so tests on the PC can run it.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ struct Probe {
   constexpr float time_s() const { return protocol::servo_period_s * static_cast<float>(periods); }
 };
 
-/// Row of a law's `parameter_rows`: one parameter and the struct member for its value.
+/// Row of `parameter_rows`: a parameter and its struct member.
 template <class Parameters>
 struct ForceParameter {
   float Parameters::*value;
@@ -49,7 +49,7 @@ struct ForceParameter {
   std::string_view help;
 };
 
-/// Row of a law's `signal_rows`: one signal for the scope and for recordings.
+/// Row of `signal_rows`: a signal and its struct member.
 template <class Signals>
 struct ForceSignal {
   float Signals::*value;
@@ -58,7 +58,7 @@ struct ForceSignal {
   std::string_view help;
 };
 
-/// Force of the box walls, for laws that include these walls.
+/// Returns the force of the box walls.
 inline Vector3 wall_force_N(const Probe& probe) {
   return wall_force_N(probe.contact, probe.velocity_m_per_s, probe.wall);
 }

@@ -1,5 +1,5 @@
-// Includes the force law file and adapts the force law to the firmware. Assertions with messages check the requirements
-// on a force law.
+// Includes the force law file and adapts the force law to the firmware. Static assertions check the requirements on a
+// force law.
 #include "firmware/control/signal_path/installed_force_law.hpp"
 
 #include <bit>
@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-// The build defines INKWELL_FORCE_LAW_FILE. The build also defines INKWELL_FORCE_LAW, the file name without its suffix.
+// The build defines INKWELL_FORCE_LAW_FILE. The build also defines INKWELL_FORCE_LAW as the file name without suffix.
 #include INKWELL_FORCE_LAW_FILE
 
 namespace inkwell::force_laws {
@@ -66,7 +66,7 @@ constexpr auto signal_rows() {
     return std::array<ForceSignal<typename Law::Signals>, 0>{};
 }
 
-/// True if each member of the struct is a float and has one row.
+/// Returns true if each struct member is a float and has one row.
 template <class Values, class Rows>
 constexpr bool fit_rows(const Rows& rows) {
   if constexpr (std::is_empty_v<Values>) {
@@ -106,7 +106,7 @@ constexpr bool have_valid_ranges(const Rows& rows) {
   return true;
 }
 
-/// Replaces an invalid force law in the rest of this file, so that the compiler shows only the assertion message.
+/// Replaces an invalid force law, so that the compiler reports no further errors.
 struct NoLaw {
   [[maybe_unused]] static constexpr std::string_view help = "";
   struct Parameters {};
@@ -161,7 +161,7 @@ static_assert(have_unique_names(signals, protocol::signal_table),
 #define INKWELL_TEXT(name) INKWELL_TEXT_OF(name)
 constexpr std::string_view law_name = INKWELL_TEXT(INKWELL_FORCE_LAW);
 
-/// Writes a report, or only counts the bytes of the report.
+/// Writes a report or counts its bytes.
 struct ReportWriter {
   std::byte* to;
   std::size_t size = 0;
@@ -209,7 +209,7 @@ constexpr std::size_t report_size = write_report(nullptr, 0);
 static_assert(report_size <= protocol::force_law_report_maximum,
               "names, units and helps of the force law are longer than protocol::force_law_report_maximum");
 
-// Only the main loop uses this data, so the data is in flash and not in the interrupt RAM.
+// This data is in flash, because only the main loop uses it.
 #if defined(__arm__)
 #define INKWELL_IN_FLASH [[gnu::section(".force_law_rows")]]
 #else
@@ -235,7 +235,7 @@ INKWELL_IN_FLASH constinit const InstalledForceLaw installed_force_law = []() {
 
 namespace {
 
-/// The compiler expands this function without a loop and without member pointers.
+/// The fold expression compiles to code without a loop.
 template <std::size_t count, class Do>
 void for_each_index(Do&& run) {
   [&]<std::size_t... i>(std::index_sequence<i...>) { (run(std::integral_constant<std::size_t, i>{}), ...); }
@@ -247,7 +247,7 @@ void for_each_index(Do&& run) {
 extern const std::size_t force_law_signal_count = signals.size();
 
 void reset_force_law(ForceLawMemory& memory) {
-  // The state is copied byte by byte, because memcpy is in flash.
+  // The state is copied by a loop, because the interrupt must not call memcpy.
   static constexpr State as_new{};
   const auto* from = reinterpret_cast<const std::byte*>(&as_new);
   for (std::size_t i = 0; i < sizeof as_new; ++i) memory.state[i] = from[i];

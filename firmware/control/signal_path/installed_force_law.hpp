@@ -1,4 +1,4 @@
-// Interface of the force law that this image was built with (-DINKWELL_FORCE).
+// Interface of the image's force law (-DINKWELL_FORCE).
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace inkwell::control {
 /// Values of the law's parameters, in row order.
 using ForceLawValues = std::array<float, protocol::force_law_parameters_maximum>;
 
-/// State of the law, and its signals of the last period.
+/// State and signals of the law.
 struct ForceLawMemory {
   static constexpr std::size_t state_bytes = 256;
 
@@ -28,11 +28,11 @@ struct ForceLawMemory {
 /// in the same period.
 void reset_force_law(ForceLawMemory& memory);
 
-/// Runs one control period of the law. The force on the hand may be infinite or not a number. An output argument needs
-/// fewer cycles than a return value.
+/// Runs one control period of the law. The force may be infinite or NaN. An output argument needs fewer cycles than a
+/// return value.
 void step_force_law(const Probe& probe, const ForceLawValues& values, ForceLawMemory& memory, Vector3& force_N);
 
-/// Number of signals of the law in ForceLawMemory::signals.
+/// Number of used entries of ForceLawMemory::signals.
 extern constinit const std::size_t force_law_signal_count;
 
 // ---- main loop ----
@@ -43,7 +43,7 @@ struct ForceLawRange {
   float default_value;
 };
 
-/// Force law data in flash. Interrupts must not read these data.
+/// Force law data in flash. Interrupts must not read this data, because it is in flash.
 struct InstalledForceLaw {
   std::size_t parameter_count;
   std::size_t signal_count;

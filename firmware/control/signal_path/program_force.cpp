@@ -37,7 +37,7 @@ bool set_target(ProgramForce& program, const ForceTarget& target, const ProgramF
   program.step_N = target.per_interval * way_N;
   const Force step = bounded(program.step_N, limits.change_N_per_period);
   if (step.magnitude_N < limits.change_N_per_period) return late;
-  // At the rate limit, the transition lasts longer than the program's interval. The last step sets exactly the target.
+  // The rate limit extends the transition. The last step reaches the target exactly.
   program.step_N = step.force_N;
   program.steps =
       1 + static_cast<std::uint32_t>(bounded(way_N, 2.0f * limits.force_limit_N).magnitude_N * limits.periods_per_N);

@@ -1,4 +1,4 @@
-// Force of a program on the PC. Reports arrive every few milliseconds and are interpolated linearly.
+// Force of a program on the PC. The force is interpolated linearly between the program's reports.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace inkwell::control {
 
-/// One report of the program, validated and prepared outside the interrupt.
+/// Validated force report of a program.
 struct ForceTarget {
   Vector3 force_N;  ///< on the hand, workspace axes; finite
   protocol::ForceMode mode = protocol::ForceMode::none;
@@ -23,9 +23,9 @@ struct ProgramForceLimits {
   std::uint32_t expiry_periods;  ///< time without a report after which the force fades
 };
 
-/// Force of a program. The force changes towards the newest report and fades if no other report arrives.
+/// Force of a program. Without a new report, the force fades after `expiry_periods`.
 struct ProgramForce {
-  /// Duration of the fade after the last report has expired: 10 ms.
+  /// Duration of the fade to zero: 10 ms.
   static constexpr std::uint32_t fade_periods = protocol::servo_rate_Hz / 100;
 
   Vector3 force_N;
@@ -41,12 +41,12 @@ struct ProgramForce {
   bool is_driven() const { return mode != protocol::ForceMode::none; }
 };
 
-/// Starts a linear transition to a new report. The transition lasts for the program's interval, or longer if the force
-/// would change too fast. A force above the limit is reduced to the limit and keeps its direction. Returns whether the
-/// report arrived more than 1 ms late.
+/// Starts a linear transition to a new report. The rate limit may extend the transition beyond the program's interval.
+/// A force above the limit is reduced to the limit and keeps its direction. Returns true if the report arrived more
+/// than 1 ms late.
 [[gnu::cold]] bool set_target(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits);
 
-/// Advances by one control period. Without reports the force fades and the program is no longer a force source.
+/// Advances by one control period. Without new reports, the force fades and the program is no longer a force source.
 void advance(ProgramForce& program, const ProgramForceLimits& limits);
 
 }  // namespace inkwell::control

@@ -1,4 +1,4 @@
-// Inputs and outputs of the control path in every control period.
+// Inputs and outputs of the signal path.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace inkwell::control {
 
-/// One reading of every sensor, scaled to SI units by the drivers.
+/// One reading of every sensor in SI units.
 struct Samples {
   std::array<std::int32_t, 3> encoder_counts;  ///< counts since power-on, with timer wraps removed
   Triple current_A;                            ///< positive from leg A to leg B; includes the amplifier offsets
@@ -34,8 +34,8 @@ struct BoardLimits {
   float duty_limit;            ///< largest magnitude of a duty cycle, 0..1
   float current_measurable_A;  ///< a higher current raises over_current, because a sensor may read too low
   float dead_time_part;        ///< voltage drop from the dead time of the bridges, as a part of the supply
-  /// A single unfiltered reading beyond these bounds is a fault. No load lowers a supply to this lower bound, and no
-  /// braked arm raises a supply to the upper bound.
+  /// A single unfiltered supply reading beyond these bounds is a fault. Neither a load nor a braking arm moves the
+  /// supply beyond these bounds.
   float supply_far_too_low_V = 0.5f * supply_minimum_V, supply_far_too_high_V = 1.1f * supply_maximum_V;
 };
 

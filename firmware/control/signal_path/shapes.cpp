@@ -28,7 +28,7 @@ Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float dep
     return pushed_N;
   }
   const Vector3 away_m = grip.point_m - probe_m;
-  // Spring and damper along the surface. The normal component of this force is then removed.
+  // The spring and damper force is projected onto the surface.
   const Vector3 pull_N = surface.stiffness_N_per_m * away_m - surface.damping_Ns_per_m * velocity_m_per_s;
   const Vector3 held_N = pull_N - dot(pull_N, normal) * normal;
   const float held_squared_N2 = dot(held_N, held_N);
@@ -77,8 +77,7 @@ void TouchedShapes::list_alive() {
 
 Vector3 TouchedShapes::force_N(const Vector3& probe, const Vector3& velocity_m_per_s) {
   const Vector3 probe_m = probe;  // local copy that stays in registers during stores
-  // Most planes are not touched. The loop collects the signs without branches, and touched planes are processed
-  // afterwards.
+  // A loop without branches finds the touched planes.
   std::uint32_t planes_below = 0;
   for (std::size_t i = 0; i < planes_.size(); ++i)
     planes_below |= std::bit_cast<std::uint32_t>(height_m(planes_[i], probe_m)) >> 31 << i;

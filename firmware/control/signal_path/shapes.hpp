@@ -11,7 +11,7 @@
 
 namespace inkwell::control {
 
-/// Surface properties of a shape. The probe is a point.
+/// Surface properties of a shape. For shapes, the probe is a point.
 struct Surface {
   float stiffness_N_per_m;
   float m_per_N;  ///< 1 / stiffness
@@ -42,7 +42,7 @@ struct Shapes {
   Sphere sphere{};
   std::array<Plane, protocol::shape_planes_maximum> planes{};
   std::array<Surface, maximum> surfaces{};
-  /// Time from the activation of the set to the expiry of each shape, or 0 for an unused shape.
+  /// Life of each shape; 0 for an unused shape.
   std::array<std::uint32_t, maximum> life_periods{};
 };
 
@@ -52,14 +52,14 @@ struct Grip {
   bool slides = false;
 };
 
-/// Sum of normal force and friction. The normal force comes from a spring and a damper and never pulls. The friction is
-/// stick-slip friction (Salisbury et al., "Haptic rendering: programming touch interaction with virtual objects", I3D
-/// 1995). `depth_m` is the depth of the probe below the surface. If `is_new` is true, the probe was above the surface
-/// in the previous period, and the grip starts at the probe.
+/// Returns the sum of normal force and friction. The normal force comes from a spring and a damper and never pulls. The
+/// friction is stick-slip friction (Salisbury et al., "Haptic rendering: programming touch interaction with virtual
+/// objects", I3D 1995). `depth_m` is the depth of the probe below the surface. If `is_new` is true, the grip starts at
+/// the probe.
 Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float depth_m, const Vector3& probe_m,
                         const Vector3& velocity_m_per_s, Grip& grip, bool is_new);
 
-/// Shapes with their contact state between periods.
+/// Shapes and their contact state.
 class TouchedShapes {
  public:
   /// Activates a new set. `shapes` must not change until the next call. Shapes that exist in both sets retain their

@@ -1,5 +1,5 @@
-// Reduces the driving component of the force near the speed limit. The force can still brake the arm. Programs and
-// walls therefore cannot cause the fault over_speed, but a hand can.
+// Near the speed limit, the force component along the motion is reduced. The force can brake the arm. Only a hand can
+// therefore cause the fault over_speed.
 #pragma once
 
 namespace inkwell::control {
@@ -13,7 +13,7 @@ inline bool is_near(float speed_squared_m2_per_s2, const SpeedLimit& limit) {
   return speed_squared_m2_per_s2 > limit.from_squared_m2_per_s2;
 }
 
-/// Fraction of the driving force component to remove, 0..1.
+/// Returns the fraction (0..1) by which the force component along the motion is reduced.
 inline float driving_reduction(float speed_squared_m2_per_s2, const SpeedLimit& limit) {
   const float part = (speed_squared_m2_per_s2 - limit.from_squared_m2_per_s2) * limit.per_squared_m2_per_s2;
   if (!(part > 0.0f)) return 0.0f;

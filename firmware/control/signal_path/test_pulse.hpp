@@ -1,4 +1,4 @@
-// Pulses for testing and identifying a motor: commands test_current and test_voltage.
+// Motor pulses of the commands test_current and test_voltage.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace inkwell::control {
 
-/// Pulse with the height `amplitude` and the duration `pulse_periods`. A rest of the same duration follows, so that
-/// recordings include the decay.
+/// Pulse with the height `amplitude` and the duration `pulse_periods`. After each pulse, a rest of the same duration
+/// lets the current decay.
 struct TestPulse {
   enum class Quantity : std::uint8_t { current, voltage };
 
@@ -27,7 +27,7 @@ struct TestPulse {
 
   bool runs() const { return remaining_periods > 0; }
   void end() { remaining_periods = 0; }
-  /// Stops the pulse. The rest is not skipped, so the host has to wait before the next pulse.
+  /// Stops the pulse. The rest after the pulse is not skipped.
   void end_pulse() { remaining_periods = remaining_periods < pulse_periods ? remaining_periods : pulse_periods; }
   /// Current or voltage of the motor in this period.
   float value() const { return remaining_periods > pulse_periods ? amplitude : 0.0f; }
@@ -42,10 +42,9 @@ constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPuls
   return {quantity, static_cast<std::uint8_t>(wanted.motor - 1), wanted.amplitude, periods, 2 * periods};
 }
 
-/// Current of motor 0, 1 or 2 for a force of `force_limit_N` on the hand. The hand fixes the probe in this pose. The
-/// force of a single motor is perpendicular to the probe motions of the other two joints. The force is the torque
-/// divided by the component of the joint's Jacobian column in this perpendicular direction. Returns 0 if the
-/// perpendicular direction is undefined in this pose.
+/// Returns the current of one motor for a force of `force_limit_N` on the hand. The hand is assumed to fix the probe.
+/// The force of one motor is perpendicular to the probe motions of the other two joints. Returns 0 if the force
+/// direction is undefined in this pose.
 inline float test_limit_A(const Jacobian& jacobian, std::size_t motor, float force_limit_N, float ampere_per_Nm) {
   const std::size_t next = motor == 2 ? 0 : motor + 1, last = motor == 0 ? 2 : motor - 1;
   const Vector3 across = cross(jacobian.column[next], jacobian.column[last]);

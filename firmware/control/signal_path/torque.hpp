@@ -30,13 +30,13 @@ struct CurrentReferences {
   bool held_by_heat = false;     ///< reduced by the lower current limit of a hot motor
 };
 
-/// Allowed part of the requested current.
+/// Returns the allowed fraction of the requested current.
 [[gnu::cold, gnu::noinline]] inline float part_of(float allowed_A, float requested_A) {
   return allowed_A * reciprocal_square_root(requested_A * requested_A);
 }
 
-/// Returns the currents for the joint torques. If a motor would exceed its allowed current, all three currents are
-/// scaled down together, so that the force keeps its direction. The allowed current falls with `heat_beyond`.
+/// Returns the currents for the joint torques. If one motor would exceed its limit, all currents are scaled down by the
+/// same factor. The allowed current falls with `heat_beyond`.
 inline CurrentReferences current_references(const Triple& torque_Nm, const Motors& motors, const Triple& heat_beyond) {
   CurrentReferences references;
   float part = 1.0f;

@@ -5,7 +5,7 @@
 namespace inkwell::control {
 
 Transition start_transition(const Vector3& jump_N, float N_per_period) {
-  // A jump below 1 uN is imperceptible, and the reciprocal square root needs a normal number.
+  // The reciprocal square root needs a normal number.
   constexpr float smallest_squared_N2 = 1e-12f;
   const float squared_N2 = dot(jump_N, jump_N);
   if (squared_N2 < smallest_squared_N2) return {};

@@ -10,8 +10,8 @@ namespace {
 /// Each Newton step squares the relative error. With a seed error of up to 6 %, three steps reach float precision.
 constexpr int newton_steps = 3;
 
-/// sin(r) = r + r^3 P(r^2) and cos(r) = 1 - r^2 / 2 + r^4 Q(r^2) for |r| <= pi/4. The coefficients are minimax fits
-/// from the Remez exchange, with errors of 1.8e-9 and 1e-10 before rounding.
+/// sin(r) = r + r^3 P(r^2) and cos(r) = 1 - r^2 / 2 + r^4 Q(r^2) for |r| <= pi/4. The Remez algorithm computed the
+/// coefficients, with errors of at most 1.8e-9 before rounding.
 float sine_near_zero(float r) {
   const float u = r * r;
   return r + r * u * (-0.1666665067f + u * (0.008331978663f + u * -0.0001949563625f));
@@ -26,8 +26,7 @@ float cosine_near_zero(float r) {
 
 SineCosine sine_cosine(float angle_rad) {
   constexpr float quarters_per_rad = 0.6366197724f;
-  // The first of two summands of pi/2 has few significant bits. Its product with the number of quarter turns is
-  // therefore exact.
+  // This part of pi/2 has few significant bits, so that its product with the number of quarter turns is exact.
   constexpr float quarter_high_rad = 1.5703125f;
   constexpr float quarter_low_rad = 4.838267949e-4f;
 
@@ -46,8 +45,7 @@ SineCosine sine_cosine(float angle_rad) {
 }
 
 float reciprocal(float value) {
-  // Negates the exponent in the bit pattern. The constant balances the seed error over all mantissas. The seed error is
-  // at most 5.1 %.
+  // Negates the exponent in the bit pattern. The seed error is at most 5.1 %.
   float estimate = std::bit_cast<float>(0x7EF31000u - std::bit_cast<std::uint32_t>(value));
   for (int i = 0; i < newton_steps; ++i) estimate *= 2.0f - value * estimate;
   return estimate;

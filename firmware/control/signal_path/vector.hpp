@@ -25,7 +25,7 @@ constexpr Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Limits `value` to [low, high]. This form compiles to compares and selects.
+/// Limits `value` to [low, high]. This form compiles to code without branches.
 constexpr float clamp(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
 }  // namespace inkwell::control

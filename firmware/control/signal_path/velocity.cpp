@@ -8,11 +8,11 @@ namespace inkwell::control {
 
 namespace {
 
-/// No arm moves this far within `rest_periods`. With this bound, the following products need at most 32 bits.
+/// No arm moves this far within `rest_periods`. This bound keeps the following products within 32 bits.
 constexpr std::int32_t farthest_counts = 65'536;
 static_assert(2LL * (farthest_counts + 1) * SpeedEstimate::rest_periods < 0x7FFFFFFF);
 
-/// Slope as a fraction of half counts and periods. Cross-multiplication compares fractions exactly and without
+/// Slope in half counts per period, as a fraction. Cross-multiplication compares fractions exactly and without
 /// division.
 struct Slope {
   std::int32_t half_counts;
@@ -21,9 +21,8 @@ struct Slope {
 
 bool less(const Slope& a, const Slope& b) { return a.half_counts * b.periods < b.half_counts * a.periods; }
 
-/// Returns the slope of the longest useful window whose edges are within the tolerance of a line.
-// The function is not inlined, because the compiler would duplicate the code after the call for each exit of the
-// function.
+/// Returns the slope of the longest window that a line approximates within the tolerance.
+// Inlining would duplicate the code of the caller.
 [[gnu::noinline]] Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
   const float speed = estimate.counts_per_period;
   const std::int32_t tolerance = speed > -0.5f && speed < 0.5f ? 1 : 2;  // half counts
@@ -60,7 +59,8 @@ void remember(SpeedEstimate& estimate, const EncoderEdge& edge) {
   if (estimate.remembered < SpeedEstimate::capacity) ++estimate.remembered;
 }
 
-/// Limits the speed to one count per time since the last edge. Called in each period without an edge.
+/// Limits the speed to one count divided by the time since the last edge. Call this function in each period without an
+/// edge.
 void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
   if (silent_periods >= SpeedEstimate::rest_periods) {
     estimate.remembered = 0;
@@ -68,8 +68,7 @@ void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
     estimate.counts_per_period = 0.0f;
     return;
   }
-  // The speed falls in steps of 1/16 instead of continuously, because the scope transmits an unchanged value with few
-  // bytes.
+  // The speed falls in steps of 1/16, because unchanged values need fewer bytes in scope frames.
   constexpr float step = 1.0f + 1.0f / 16.0f;
   const float speed = estimate.counts_per_period;
   const auto silent = static_cast<float>(silent_periods);

@@ -1,20 +1,18 @@
 // Joint speed from the encoder, updated in every control period.
 //
-// One count in one period of 50 us corresponds to 1.1 m/s at the probe, so the difference of two samples is too coarse.
-// The estimator is a first-order adaptive window (Janabi-Sharifi, Hayward, Chen, IEEE T-CST 2000) that uses encoder
-// edges instead of samples. An edge is detected within one control period. The error of an edge position is therefore
-// the joint motion of one period. The error of a sample would be one count.
+// One count per period corresponds to 1.1 m/s at the probe, so the difference of two samples is too coarse. The
+// estimator is a first-order adaptive window (Janabi-Sharifi, Hayward, Chen, IEEE T-CST 2000) that uses encoder edges
+// instead of samples. The position error of an edge is the joint motion of one period. The position error of a sample
+// would be one count.
 //
 // A straight line connects the oldest edge and the newest edge of the window. All other edges of the window must be
-// within a tolerance of this line. A constant speed never exceeds the tolerance. The tolerance is half a count at
-// speeds up to half a count per period, and one count at higher speeds. A window stops growing if it contains a whole
-// quadrature cycle and is long enough for an error below 2 %. The phase errors of the encoder cancel over a whole
-// cycle, and a longer window would only add lag. Slow motion results in long windows with little noise. Acceleration
-// results in short windows with little lag.
+// within a tolerance of the line. A constant speed never exceeds the tolerance. The tolerance is half a count at speeds
+// up to half a count per period, and one count at higher speeds. The window grows until it contains a whole quadrature
+// cycle and the error is below 2 %. The phase errors of the encoder cancel over a whole quadrature cycle. Slow motion
+// results in long windows with little noise. Acceleration results in short windows with little lag.
 //
-// Between edges the estimate does not change, unless a long time without an edge indicates a lower speed. After n
-// periods without an edge, the speed is at most 1/n counts per period. At a reversal the speed is set to zero and the
-// window restarts. The estimate for a motion of one count back and forth is therefore zero.
+// After n periods without an edge, the speed is at most 1/n counts per period. At a reversal the speed is set to zero
+// and the window restarts. The estimate for a motion of one count back and forth is therefore zero.
 #pragma once
 
 #include <array>
@@ -24,7 +22,7 @@
 
 namespace inkwell::control {
 
-/// Boundary between two counts, and the first control period in which the encoder was beyond this boundary.
+/// Boundary between two counts and the period in which the encoder crossed the boundary.
 struct EncoderEdge {
   std::uint32_t period;
   std::int32_t boundary;
@@ -33,10 +31,9 @@ struct EncoderEdge {
 /// State of the speed estimate of one joint.
 struct SpeedEstimate {
   static constexpr std::uint32_t capacity = 6;
-  /// An edge is stored only if at least this time has passed since the last stored edge. Six stored edges therefore
-  /// cover 3 ms even at a speed at which every period has an edge.
+  /// Shortest time between two stored edges. Six stored edges therefore cover about 3 ms at high speed.
   static constexpr std::uint32_t spacing_periods = 11;
-  /// The time of an edge has an uncertainty of one period, so the speed error of a window of this length is 1/64.
+  /// With an edge time error of one period, the speed error is 1/64.
   static constexpr std::uint32_t enough_periods = 64;
   static constexpr std::int32_t enough_counts = 4;
   /// After half a second without an edge the speed is zero.
@@ -52,15 +49,14 @@ struct SpeedEstimate {
   float counts_per_period = 0.0f;
 };
 
-/// Starts a new estimate with a speed of zero at these counts.
+/// Resets the speed to zero at `counts`.
 constexpr void start(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period) {
   estimate.counts = counts;
   estimate.head.period = period;
 }
 
-/// Processes the counts of one control period. If `may_fit` is false, a new edge is not fitted until the next period in
-/// which `may_fit` is true. The caller can thus limit each period to the fit of one joint. A fit needs at most
-/// `capacity` short steps and no division.
+/// Processes the counts of one control period. A new edge is fitted only if `may_fit` is true. The caller thus limits
+/// each period to one fit. A fit needs at most `capacity` short steps and no division.
 void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, bool may_fit = true);
 
 }  // namespace inkwell::control

@@ -1,18 +1,16 @@
-// Checks that VDDA, the reference voltage of the converters, has its nominal value. The shunt amplifiers and the
-// potentiometers are also connected to VDDA. A VDDA error therefore scales every measured current and the measured
-// supply voltage by the same factor.
+// Checks VDDA, the reference voltage of the converters. The shunt amplifiers and the potentiometers are also connected
+// to VDDA. A VDDA error therefore scales all measured currents and voltages by the same factor.
 //
-// The internal reference voltage VREFINT does not depend on VDDA. The reading of VREFINT is proportional to VREFINT /
-// VDDA, so the reading falls as VDDA rises.
+// The internal reference voltage VREFINT does not depend on VDDA. The reading of VREFINT therefore falls as VDDA rises.
 //
-// The errors are from the STM32F405 data sheet ("Embedded internal reference voltage", "ADC characteristics"). VREFINT
-// is between 1.18 V and 1.24 V for all chips (1.21 V with a tolerance of 2.5 %). The manufacturer measures VREFINT of
-// each chip at a VDDA of 3.3 V with an error of 10 mV (0.3 %). Between -40 C and 105 C, VREFINT changes by 3 mV (0.25
-// %). The converter error is at most 5 counts of 1500 (0.3 %).
+// The following errors are from the STM32F405 data sheet ("Embedded internal reference voltage", "ADC
+// characteristics"). VREFINT is between 1.18 V and 1.24 V for all chips (1.21 V with a tolerance of 2.5 %). The
+// manufacturer measures VREFINT of each chip at a VDDA of 3.3 V with an error of 10 mV (0.3 %). Between -40 C and 105
+// C, VREFINT changes by 3 mV (0.25 %). The converter error is at most 5 counts of 1500 (0.3 %).
 //
 // Measurement, temperature and converter errors add up to less than 1 %. The error of a 3.3 V regulator is at most 3 %.
-// The bound of 5 % exceeds the sum of measurement error and regulator error. Amplifiers and potentiometers still work
-// with a supply error of 5 %.
+// The bound of 5 % exceeds the sum of measurement error and regulator error. Amplifiers and potentiometers work with a
+// supply error of 5 %.
 //
 // The check uses only integers. If the main loop used floats, every interrupt would save the floating-point registers.
 #pragma once
@@ -25,18 +23,18 @@
 namespace inkwell::control {
 
 constexpr float nominal_analog_supply_V = 3.3f;
-/// Returns the ADC counts of a voltage if VDDA is 3.3 V.
+/// Returns the ADC counts of a voltage at VDDA = 3.3 V.
 constexpr std::uint16_t counts_at_nominal(float volts) {
   return static_cast<std::uint16_t>(volts / nominal_analog_supply_V * 4096.0f);
 }
 
 struct AnalogSupply {
-  /// Range for all chips, from the data sheet.
+  /// Data sheet range of VREFINT for all chips.
   static constexpr std::uint16_t minimum_counts = counts_at_nominal(1.18f), typical_counts = counts_at_nominal(1.21f),
                                  maximum_counts = counts_at_nominal(1.24f);
-  /// Largest error of the manufacturer's measurement: 1 %.
+  /// Largest calibration error of VREFINT: 1 %.
   static constexpr std::uint16_t calibration_error_counts = typical_counts / 100;
-  /// Number of tolerated consecutive wrong readings. A current loop is too slow to follow a tolerated disturbance.
+  /// Number of tolerated consecutive wrong readings. The current loops do not react to a disturbance of this duration.
   static constexpr std::uint32_t tolerated_readings = 12;
 
   std::int32_t expected_counts = typical_counts;  ///< reading of VREFINT at nominal VDDA
@@ -44,8 +42,8 @@ struct AnalogSupply {
   std::uint32_t wrong_readings = 0;
 };
 
-/// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. A value out of range was never
-/// written or was lost. In this case the typical value is used, and the tolerance includes the spread between chips.
+/// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. Chips without a valid calibration
+/// value use the typical value and a larger tolerance.
 constexpr AnalogSupply analog_supply(std::uint16_t calibrated_counts) {
   constexpr auto tolerance_per_mille = static_cast<std::int32_t>(1000.0f * protocol::analog_supply_tolerance + 0.5f);
   constexpr std::int32_t spread_per_mille =
@@ -72,7 +70,7 @@ inline bool is_off(AnalogSupply& supply, std::uint16_t reference_counts) {
   return supply.wrong_readings > AnalogSupply::tolerated_readings;
 }
 
-/// VDDA from this reading of VREFINT. Returns 0 for the impossible reading 0.
+/// Returns VDDA for a VREFINT reading, or 0 for the impossible reading 0.
 inline float analog_supply_V(const AnalogSupply& supply, std::uint16_t reference_counts) {
   if (reference_counts == 0) return 0.0f;
   return nominal_analog_supply_V * static_cast<float>(supply.expected_counts) / static_cast<float>(reference_counts);

@@ -13,7 +13,7 @@ constexpr protocol::Conditions gentle =
 
 void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Conditions found) {
   if (!brake.is_on()) return;
-  // A speed that is not a number does not count as fast.
+  // NaN does not count as a fast speed.
   const bool is_fast = speed_squared_m2_per_s2 > Brake::speed_m_per_s * Brake::speed_m_per_s;
   brake.remaining_periods = is_fast && may_brake(found) ? brake.remaining_periods - 1 : 0;
   if ((found & gentle).any()) brake.is_gentle = true;

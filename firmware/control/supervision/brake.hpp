@@ -1,13 +1,13 @@
 // Electrical braking of a moving arm after a fault has switched the force off.
 //
-// With all low sides on, the motors are shorted and act as dampers. The back EMF of each motor drives a current through
-// its resistance, and this current opposes the motion. The kinetic energy becomes heat. When the brake releases the
-// motors for a period, the motors return a little energy to the supply. Braking needs no current control, so it works
-// after most faults. The brake is not used if a bridge or a current measurement may be faulty.
+// With all low sides on, the motors are shorted and act as dampers. The back EMF of each motor drives a current that
+// opposes the motion. The kinetic energy becomes heat. Released motors return a little energy to the supply. Braking
+// needs no current control, so it works after most faults. The brake is not used if a bridge or a current measurement
+// may be faulty.
 //
-// The force of a damper increases with the speed of the arm. The motors are therefore released in each control period
-// in which a motor current exceeds the current at the force limit. Gentle braking uses a lower current bound. After a
-// release, the currents decay within some microseconds and need a period or more to rise again.
+// The force of a damper increases with the speed of the arm. A motor current above the current at the force limit
+// therefore releases the motors for one period. Gentle braking uses a lower current bound. After a release, the
+// currents decay within microseconds.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,12 @@
 namespace inkwell::control {
 
 struct Brake {
-  /// Below this speed the arm coasts. The kinetic energy of the heaviest arm in boards/arms is then less than 1 mJ.
+  /// Below this speed the arm coasts. At this speed, the kinetic energy of the heaviest supported arm is less than 1
+  /// mJ.
   static constexpr float speed_m_per_s = 0.1f;
   static constexpr std::uint32_t duration_maximum_periods = periods_in(0.5f);
-  /// Current bound of gentle braking, relative to Limits::brake_A. At the usual force limit of an Omni, the computed
-  /// average braking force of one motor is 0.3 to 0.6 N up to 2 m/s, and 1.1 N at 3 m/s.
+  /// Current bound of gentle braking, relative to Limits::brake_A. On an Omni, the average braking force of one motor
+  /// is 0.3 to 0.6 N at up to 2 m/s.
   static constexpr float gentle_part = 0.15f;
 
   std::uint32_t remaining_periods = 0;
@@ -33,17 +34,17 @@ struct Brake {
   bool is_on() const { return remaining_periods != 0; }
 };
 
-/// Returns true if none of these faults requires coasting. The motors may then be shorted.
+/// Returns true if braking is permitted with these faults.
 constexpr bool may_brake(protocol::Conditions found) {
   return !(found & protocol::conditions([](const auto& row) { return row.off == protocol::Off::coast; })).any();
 }
 
-/// Call this function once per control period, including the first period of braking. `speed_squared_m2_per_s2` is the
-/// squared probe speed. `found` comes from the supervisor.
+/// Call this function once per control period. `speed_squared_m2_per_s2` is the squared probe speed. `found` comes from
+/// the supervisor.
 void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Conditions found);
 
-/// Returns true if the motors are shorted in this period. `limit_A` is Limits::brake_A. A current that is not a number
-/// releases the motors.
+/// Returns true if the motors are shorted in this period. `limit_A` is Limits::brake_A. A NaN current releases the
+/// motors.
 bool shorts(const Brake& brake, const Triple& current_A, const Triple& limit_A);
 
 }  // namespace inkwell::control

@@ -1,11 +1,10 @@
 // Checks the levels of the wires to the bridges. The input register shows the level at the pad even while the chip
-// drives the pin. A wire that touches ground or a supply overrides the output of the chip.
+// drives the pin. A short circuit to ground or a supply overrides the chip's output.
 //
 // While the bridges are off, the enable wire, the monostable output and all legs must be low. While the bridges are on,
-// the enable wire must be high. The control interrupt checks in each period that the monostable output is also high.
-// The legs switch while the bridges are on, so the leg levels are not checked. The check in motor_check.hpp
-// ensures that the motors follow the legs. The heartbeat is high only during the control interrupt, so the main loop
-// always reads a low level.
+// the enable wire must be high. While the bridges are on, the control interrupt checks the monostable output. The legs
+// switch while the bridges are on, so the leg levels are not checked. MotorCheck detects a leg that does not switch.
+// The heartbeat is high only during the control interrupt, so the main loop always reads a low level.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +21,13 @@ struct BridgePins {
 };
 
 struct BridgeWire {
-  /// Number of tolerated consecutive wrong readings. A wire settles within 1 us, but a single reading may coincide with
-  /// a spike.
+  /// Number of tolerated consecutive wrong readings. A single wrong reading may be a spike.
   static constexpr std::uint32_t tolerated_readings = 1;
 
   std::uint32_t wrong_readings = 0;
 };
 
-/// Returns true after too many consecutive readings of a wrong wire level.
+/// Returns true after more than `tolerated_readings` consecutive wrong readings.
 constexpr bool is_shorted(const BridgeWire& wire) { return wire.wrong_readings > BridgeWire::tolerated_readings; }
 
 constexpr void update_wire_check(BridgeWire& wire, const BridgePins& pins) {

@@ -1,21 +1,18 @@
 // Detects an encoder with one dead wire.
 //
-// Counting needs alternating edges on both wires. With one dead wire (broken, shorted or stuck), each edge of the other
-// wire changes the count by one. The next edge reverses this change. The count then alternates between two neighboring
-// values while the joint moves. A healthy encoder shows the same pattern if the arm vibrates at an edge. The rate of
-// the changes distinguishes a dead wire from a vibration.
+// Counting needs alternating edges on both wires. With one dead wire (broken, shorted or stuck), the count alternates
+// between two neighboring values while the joint moves. The count of a healthy encoder alternates if the arm vibrates
+// at an edge. The rate of the changes distinguishes a dead wire from a vibration.
 //
 // The bound is 120 changes in 0.1 s, which corresponds to a vibration of 600 Hz across an edge. Normal vibrations are
-// slower.
-// A program sets one force per millisecond, so this force alternates at 500 Hz at most and causes 100 changes in 0.1 s.
-// An arm in contact with a wall or a shape vibrates at its natural frequency, 41 Hz for 3000 N/m and 45 g.
-// A current loop could oscillate faster, but with a small amplitude. At 600 Hz, the largest force of 8 N moves the
-// probe by only 0.013 mm, a quarter of a count. A hand tremor moves the arm away from an edge within 0.1 s.
+// slower. A program's force alternates at 500 Hz at most, so it causes at most 100 changes in 0.1 s. An arm of 45 g at
+// a wall of 3000 N/m vibrates at 41 Hz. At 600 Hz, a force of 8 N moves the probe by 0.013 mm, which is a quarter of a
+// count. A hand tremor moves the arm away from an edge within 0.1 s.
 //
-// Input filters and Schmitt triggers prevent chatter of an encoder that rests at an edge.
+// Input filters and Schmitt triggers prevent chatter at an edge.
 //
-// If one wire is dead, half of the edges remain. A joint at 1 rad/s then passes 2500 to 3000 counts per second and
-// causes 125 to 150 changes in 0.1 s. The check therefore detects a dead wire at probe speeds of 0.15 m/s or more.
+// With one dead wire, a joint at 1 rad/s causes 125 to 150 changes in 0.1 s. The check therefore detects a dead wire at
+// probe speeds of 0.15 m/s or more.
 #pragma once
 
 #include <cstdint>
@@ -33,9 +30,8 @@ struct EncoderWire {
   std::uint32_t since_periods = 0;
 };
 
-/// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
-/// `dead_changes` changes between two neighboring counts within `within_periods`. Counting then restarts. Edges are
-/// missed if they are closer together than the readings, but a fast joint still causes enough changes.
+/// Checks the reading of period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
+/// `dead_changes` changes between two neighboring counts within `within_periods`. Counting then restarts.
 inline bool is_dead(EncoderWire& wire, std::uint16_t timer_count, std::uint32_t now_periods) {
   if (timer_count == wire.count) return false;
   const bool goes_back = timer_count == wire.before;

@@ -1,15 +1,13 @@
 // Checks that voltage, current and speed of a motor are consistent.
 //
-// The motor equation is u = R i + k w. The voltage is resistance times current plus back EMF. The voltage is the
-// command to the bridge, the current comes from the shunt, and the speed comes from the encoder. A current reading may
-// be frozen, too small, or from another motor. The current loop then applies a voltage that the reading does not
-// explain. An open motor and a stuck bridge leg also cause an unexplained voltage. The force is undefined as long as a
-// voltage is unexplained. A voltage that is too small for its current indicates shorted turns or a current reading that
-// is too large.
+// The motor equation is u = R i + k w. The voltage u is the bridge command, the current i comes from the shunt, and the
+// speed w comes from the encoder. If a current reading is frozen, too small or from another motor, the current loop
+// applies an unexplained voltage. An open motor and a stuck bridge leg also cause an unexplained voltage. A voltage
+// below R i + k w indicates shorted turns or an excessive current reading.
 //
-// Both sides of the equation are compared while the current loops drive the bridges. Differences beyond the tolerance
-// of a healthy motor are integrated over time. This integral is a flux. The equation neglects the inductance. The
-// inductance adds at most L di to this flux. A large difference is detected sooner than a small difference.
+// Both sides of the motor equation are compared while the current loops drive the bridges. Differences beyond the
+// tolerance of a healthy motor are integrated over time. The neglected inductance adds at most L di to the integral.
+// Large differences are therefore detected sooner than small differences.
 #pragma once
 
 #include <algorithm>
@@ -26,11 +24,11 @@ namespace inkwell::control {
 /// Voltage model of a healthy motor.
 struct MotorModel {
   Triple resistance_ohm;  ///< from the parameters
-  /// Back EMF per joint speed: gear ratio times torque constant, negative for a reversed motor.
+  /// Back EMF per joint speed, negative for a reversed motor.
   Triple back_emf_Vs_per_rad;
 };
 
-/// Voltage drop of a bridge. The drop opposes the current. At small currents the drop may have the opposite sign.
+/// Voltage drop of a bridge. Above MotorCheck::steady_A, the voltage drop opposes the current.
 struct BridgeLoss {
   float measured_V;  ///< from the self-test, including brushes; 0 if unknown
   float most_V;      ///< from the dead time of the bridge
@@ -48,18 +46,15 @@ struct MeasuredMotors {
 
 /// Assumed resistance of a motor.
 struct Resistance {
-  /// Tolerated excess resistance of a motor with a measured resistance. The tolerance covers an error of 50 K in the
-  /// heat model.
+  /// Tolerance above a measured resistance. The tolerance covers an error of 50 K in the heat model.
   static constexpr float tolerated_increase_if_measured = 0.2f;
-  /// Tolerated excess resistance of a motor without a measured resistance. Copper that is 100 K hotter has 39 % more
-  /// resistance. Switches and shunt add 4 %.
+  /// Tolerance above the resistance parameter. A rise of 100 K increases the copper resistance by 39 %. Switches and
+  /// shunt add 4 %.
   static constexpr float tolerated_increase_if_unmeasured = 0.43f;
-  /// The voltage range of a current loop includes this part of the resistance tolerance. For a motor with a measured
-  /// resistance, this part is 5 % of the resistance. The resistance of a healthy motor may be higher, depending on
-  /// angle or heat. A motor with a higher resistance gets less current at the force limit, but no fault is raised.
+  /// The voltage range of a current loop includes this part of the resistance tolerance. A larger resistance reduces
+  /// the current at the force limit.
   static constexpr float room_part = 0.25f;
-  /// Increase of copper resistance at a temperature rise of 100 K. This rise is the steady state at the continuous
-  /// current.
+  /// Relative increase of the copper resistance at a rise of 100 K. Heat 1 corresponds to a rise of 100 K.
   static constexpr float part_per_heat = 0.39f;
 
   float value_ohm;
@@ -70,8 +65,7 @@ struct Resistance {
   /// `warmer` is the heat gained since the measurement.
   static constexpr Resistance of(float measured_ohm, float warmer, float parameter_ohm) {
     if (!(measured_ohm > 0.0f)) return {parameter_ohm, tolerated_increase_if_unmeasured};
-    // If the motor has cooled since the measurement, the measured resistance is used. After a restart, the heat model
-    // may have overestimated the heat at the measurement.
+    // If the motor has cooled since the measurement, the measured resistance is used.
     const float more = warmer > 0.0f ? part_per_heat * warmer : 0.0f;
     return {measured_ohm + measured_ohm * more, tolerated_increase_if_measured};
   }
@@ -79,17 +73,16 @@ struct Resistance {
 
 struct MotorCheck {
   /// Tolerance for brushes, diodes and sensor errors, in addition to the bridge drop. The flux tolerance covers short
-  /// effects. Examples are the inductive voltage of a current change, and the delay of the speed measurement when the
-  /// arm stops.
+  /// effects, such as the inductive voltage of a current change.
   static constexpr float tolerance_V = 0.3f;
-  /// The current ripple does not change the sign of a current above this value. The bridge drop of such a current does
-  /// not depend on the current.
+  /// Above this current, the ripple does not change the sign of the current. Above this current, the bridge drop is
+  /// constant.
   static constexpr float steady_A = 0.3f;
-  /// A motor that has cooled by 100 K since its measurement has 28 % less resistance.
+  /// A temperature fall of 100 K lowers the resistance by 28 %.
   static constexpr float tolerated_decrease_of_resistance = 0.28f;
-  /// Magnets that are 100 K hotter are 20 % weaker.
+  /// A rise of 100 K weakens the magnets by 20 %.
   static constexpr float tolerated_part_of_back_emf = 0.25f;
-  /// A motor of 0.24 mH needs 1.2 mVs to change its current from one limit to the other.
+  /// A current reversal in 0.24 mH needs 1.2 mVs.
   static constexpr float tolerance_flux_Vs = 0.003f;
 
   /// Each period checks one motor, so each reading represents three periods.
@@ -101,7 +94,7 @@ struct MotorCheck {
   BridgeLoss loss{};       ///< voltage drop of the bridge in that period
 };
 
-/// Unexplained voltage, and its tolerance for a healthy motor.
+/// Unexplained voltage and its tolerance.
 struct Unexplained {
   float voltage_V, tolerance_V;
 };
@@ -113,8 +106,7 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
   const bool is_more = left_V * current_A > 0.0f;
   const float part_of_resistance =
       is_more ? resistance.tolerated_increase : MotorCheck::tolerated_decrease_of_resistance;
-  // The bridge drop opposes the current. If the voltage is too small for its current, the drop therefore reduces the
-  // tolerance.
+  // The bridge drop reduces the tolerance for voltages that are too small.
   const float bridge_V = is_more || !(std::fabs(current_A) > MotorCheck::steady_A) ? loss.most_V : -loss.least_V();
   return {std::fabs(left_V), bridge_V + MotorCheck::tolerance_V + part_of_resistance * std::fabs(ohmic_V) +
                                  MotorCheck::tolerated_part_of_back_emf * std::fabs(back_emf_V)};
@@ -130,8 +122,8 @@ inline void reset(MotorCheck& check) {
   check.voltage_V = 0.0f;
 }
 
-/// Completes the period. The next call of update_motor_check() checks `motor`, 0..2. `voltage_V` is the bridge voltage
-/// of this motor until the next call, and `loss` is the voltage drop of the bridge.
+/// Selects the motor for the next update_motor_check(). `voltage_V` is the bridge voltage of this motor until the next
+/// call.
 inline void turn_to(MotorCheck& check, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
   check.motor = motor;
   check.voltage_V = voltage_V;
@@ -139,8 +131,8 @@ inline void turn_to(MotorCheck& check, std::size_t motor, float voltage_V, const
 }
 
 /// Returns the voltage range of a motor for currents up to +-`most_A`. The range is limited to +-`bound_V`.
-/// `back_emf_V` is the approximate back EMF of the motor, and `bridge_V` is the voltage drop of the bridge. The range
-/// always contains 0 V, so that a wrong speed value cannot drive the motor.
+/// `back_emf_V` is the approximate back EMF of the motor. The range always contains 0 V, so that a wrong speed value
+/// cannot drive the motor.
 inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
                                   float bound_V) {
   const float half_V =

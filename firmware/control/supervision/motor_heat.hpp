@@ -1,4 +1,4 @@
-// Motor heat from the measured currents, and the excess heat that reduces the current limits.
+// Motor heat, computed from the measured currents.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace inkwell::control {
 
-/// Temperature rise of each winding above room temperature, relative to the steady-state rise at its continuous
-/// current. The rise is the sum of two temperature differences: winding to housing (fast) and housing to room (slow).
-/// The squared current increases both differences. Each difference decays with a separate time constant. At power-on
-/// the motors count as cold. After any other restart, the motor heat is unchanged.
+/// Heat 1 is the steady-state temperature rise of a winding at its continuous current. The heat is the sum of two
+/// temperature differences: winding to housing (fast) and housing to room (slow). Both differences rise with the
+/// squared current. Each difference decays with a separate time constant. At power-on the motors are assumed to be
+/// cold. After any other restart, the motor heat is unchanged.
 struct MotorHeat {
-  /// Number of readings per heat update. The heat of one reading is below the resolution of a float.
+  /// Number of readings per heat update. The heat increment of one reading is below the resolution of a float.
   static constexpr std::uint32_t readings_per_update = 128;
   static constexpr std::uint32_t periods_per_update = 3 * readings_per_update;
   Triple heat{};
@@ -24,7 +24,7 @@ struct MotorHeat {
   std::uint32_t readings = 0;  ///< number of readings in each sum
 };
 
-/// Contents of MotorHeat after a restart. The struct has no initial values, because start-up does not clear its memory.
+/// Motor heat that survives a restart. Start-up does not initialize this struct.
 struct Warmth {
   Triple heat, housing;
   std::uint32_t too_hot;  ///< 0 or 1

@@ -1,8 +1,8 @@
 // Small voltage pulses for the self-test of motors, bridges and shunts. The pulses drive one motor after another. Each
 // motor is driven with the levels low, high, -high and -low, followed by a rest.
 //
-// The current rise from the low level to the high level depends on the resistance. The dead time of the bridge and a
-// constant back EMF reduce both levels equally. The force impulses on the hand add up to zero.
+// The currents at the low and the high level determine the resistance. The dead time of the bridge and a constant back
+// EMF reduce both currents equally. The force impulses on the hand add up to zero.
 #pragma once
 
 #include <array>
@@ -39,20 +39,19 @@ struct PulseScale {
 
 class SelfTestPulses {
  public:
-  /// Nine times the electrical time constant of a motor.
+  /// Level duration: nine electrical time constants of a motor.
   static constexpr std::uint32_t level_periods = periods_in(0.001f);
-  /// The last periods of a level are averaged, because the current has settled by then.
+  /// Only the last periods of a level are averaged, after the current has settled.
   static constexpr std::uint32_t mean_periods = 8;
   static constexpr std::uint32_t rest_periods = 10;
   static constexpr std::uint32_t round_periods = 3 * (PulseRound::levels * level_periods + rest_periods);
-  /// Expected current at the high level. This current applies 1.4 N to the hand for 1 ms. The current at the low level
-  /// is `low_part` of this current.
+  /// Expected current at the high level. This current causes a force of 1.4 N for 1 ms. The current at the low level is
+  /// `low_part` of this current.
   static constexpr float high_A = 0.7f, low_part = 0.4f;
-  /// Smallest pulse current, even for motors with a lower limit. The resistance cannot be measured with a smaller
-  /// current. Every motor tolerates this current for 1 ms.
+  /// Smallest pulse current of all motors. The resistance cannot be measured with a smaller current. Every motor
+  /// tolerates this current for 1 ms.
   static constexpr float high_minimum_A = 0.3f;
-  /// Over-current bound during the pulses. The bound includes the effects of the back EMF and of the other motors'
-  /// pulses.
+  /// Over-current bound during the pulses.
   static constexpr float maximum_A = 1.5f * high_A;
   /// Voltage bound for windings with a high resistance.
   static constexpr float ohmic_maximum_V = 7.5f;
@@ -65,7 +64,7 @@ class SelfTestPulses {
   void stop() { runs_ = false; }
   bool runs() const { return runs_; }
 
-  /// Runs one control period of a round. Returns the voltage of each motor for the next period.
+  /// Runs one control period of the test pulses. Returns the voltage of each motor for the next period.
   [[gnu::cold]] Triple step(const Triple& current_A, const std::array<std::int32_t, 3>& encoder_counts,
                             const PulseScale& scale);
 

@@ -1,24 +1,21 @@
-// Detects an encoder that does not change although the current of its motor changes.
+// Detects an encoder whose count does not follow changes of the motor current.
 //
-// The encoder is the only sensor of a joint angle, so a stuck encoder has the same readings as a blocked joint. A
-// blocked joint, however, is never rigid. A change of motor torque turns the joint slightly, because cables, links,
-// stops and hands are elastic. The stiffness of an Omni at the stylus is 1 to 2 N/mm, so 1 N turns its joints by ten
-// counts. Friction blocks a joint if the force changes by less than 0.5 N, twice the friction of an Omni.
+// A stuck encoder and a blocked joint both have a constant count. A torque change turns even a blocked joint slightly,
+// because cables, links, stops and hands are elastic. At a stiffness of 1 to 2 N/mm, the joints of an Omni turn by
+// about ten counts per newton. Friction can block a joint of an Omni up to a force change of 0.5 N.
 //
-// A change of 1.5 N at the end of the longer link must move the encoder by more than one count. An arm with twice the
-// friction and twice the stiffness of an Omni still moves by more than one count. The count of an encoder with one dead
-// wire also changes by at most one. On a slow arm, these changes are too rare for the check in
-// encoder_wire.hpp.
+// A change of 1.5 N at the end of the longer link must move the encoder by more than one count. At 1.5 N, an arm with
+// twice the friction and twice the stiffness of an Omni moves by more than one count. On slow arms, this check also
+// detects a dead encoder wire.
 //
-// A healthy joint occasionally does not move when the force changes by 1.5 N. A hand that slides along a wall or
-// presses into a wall at an angle may balance the change of the wall force. Friction then blocks the joint. In one hour
-// of random use on the virtual board, each standstill of a healthy joint contained at most two changes of 1 N and at
-// most one change of 2 N. The fault is raised after three changes of 1.5 N. A press, a release and a second press count
-// as three changes. An increase of 4.5 N also counts as three changes.
+// A healthy joint occasionally does not move when the force changes by 1.5 N. A hand may balance the change of a wall
+// force. In one hour of random use in simulation, no stationary healthy joint had three changes of 1 N. The fault is
+// raised after three changes of 1.5 N. A press, a release and a second press count as three changes. A force increase
+// of 4.5 N counts as three changes.
 //
-// In one observed reversal, a healthy arm was stationary for 30 ms while the wall force raised the current by 0.5 A.
-// Current changes therefore count only after the joint has been stationary for 0.1 s. The current is low-pass filtered
-// over about 10 ms, so a force that alternates too fast for the arm has no effect on the filtered current.
+// At a reversal, a healthy arm may be stationary for 30 ms while the current rises by 0.5 A. Current changes therefore
+// count only after the joint has been stationary for 0.1 s. A low-pass filter of about 10 ms removes currents that
+// alternate too fast to move the arm.
 //
 // The inkwell is too rigid for this check, so the check is inactive while the stylus is in the inkwell.
 #pragma once
@@ -48,9 +45,8 @@ struct StuckEncoder {
   unsigned changes = 0;  ///< number of current changes in this standstill
 };
 
-/// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current changes
-/// of more than `moving_A` while the encoder was stationary. If `held` is true, the joint may be blocked, and the
-/// standstill time restarts.
+/// Checks an encoder and its motor current in period `now_periods`. Returns true after too many current changes of more
+/// than `moving_A` at a constant count. If `held` is true, the standstill time restarts.
 inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
                      float moving_A) {
   encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);

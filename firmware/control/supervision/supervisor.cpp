@@ -15,10 +15,10 @@ using protocol::Fault;
 using protocol::State;
 using protocol::StateTransition;
 
-/// The table is copied, because a table in a header may be in flash.
+/// The interrupt reads this copy, because the original table may be in flash.
 constexpr auto transitions = protocol::transition_table;
 
-/// Part of the tables that belongs to one state, so that an interrupt reads only one row.
+/// Collects the table entries of one state, so that the interrupt reads only one row.
 struct OfState {
   Conditions monitored;
   Events key_events;   ///< key events of all transitions from the state
@@ -27,8 +27,8 @@ struct OfState {
   const StateTransition* transitions_end = nullptr;
 };
 
-/// One event that keeps the transition closed: a needed event that is missing, or an excluded event that is present.
-/// The last such event in the event list is the rarest one, and is therefore used.
+/// Returns one event that can keep the transition closed. Events at the end of the event list are rare, so the last
+/// event is used.
 constexpr Events key_event(const StateTransition& transition) {
   return Events(std::bit_floor((transition.needs.any() ? transition.needs : transition.unless).bits()));
 }
@@ -65,7 +65,7 @@ constexpr auto faults = []() {
   return result;
 }();
 
-/// The user cannot clear a fault while the condition in its entry is present.
+/// A fault cannot be cleared while the condition in its entry is present.
 constexpr auto clearing_blocker = []() {
   std::array<Conditions, protocol::fault_code_end> result{};
   for (const auto& row : protocol::condition_table)
@@ -90,7 +90,7 @@ Supervisor advance(const Supervisor& supervisor, const Situation& situation) {
   if (supervisor.state == State::fault) [[unlikely]]
     now |= protocol::when(Event::cause,
                           (situation.found & clearing_blocker[static_cast<std::size_t>(supervisor.fault)]).any());
-  // In the state `update` the reported fault is still stored.
+  // The state `update` retains the reported fault.
   now |= protocol::when(Event::raised, supervisor.fault != Fault::none);
   for (const StateTransition* transition = here.transitions_begin; transition != here.transitions_end; ++transition)
     if (transition->is_open(now))

@@ -1,11 +1,11 @@
-// State machine that applies the tables of protocol/supervision.hpp in each control period.
+// State machine of the board, with the tables of protocol/supervision.hpp.
 #pragma once
 
 #include "protocol/supervision.hpp"
 
 namespace inkwell::control {
 
-/// Conditions in this period, and requests since the previous period.
+/// Conditions and requests of one period.
 struct Situation {
   protocol::Events events;
   protocol::Conditions found;  ///< includes faults that the state does not monitor
@@ -17,11 +17,10 @@ struct Supervisor {
   bool operator==(const Supervisor&) const = default;
 };
 
-/// Fast state check for most periods. Returns true if no fault is found and no transition is possible. If the result is
-/// false, call advance().
+/// Returns true if no fault is found and no transition is possible. If the result is false, call advance().
 bool stays_unchanged(protocol::State state, const Situation& situation);
 
-/// Returns the state of the next period. This function itself determines `Event::cause`.
+/// Returns the state of the next period. This function sets `Event::cause`.
 [[gnu::cold]] Supervisor advance(const Supervisor& supervisor, const Situation& situation);
 
 }  // namespace inkwell::control

@@ -1,14 +1,12 @@
-// Detects an oscillating bridge supply. Causes are a worn bulk capacitor, a loose plug, an unstable power supply or a
-// failed rectifier diode.
+// Detects an oscillating bridge supply. Possible causes are a worn bulk capacitor, a loose plug, an unstable power
+// supply or a failed rectifier diode.
 //
-// The frequency of an oscillation distinguishes a fault from normal operation. The amplitude does not distinguish a
-// fault. A step, a sag or a spike exceeds the bound at most twice, at the start and at the end. After a step, the slow
-// mean follows the voltage. A hand that swings the arm reverses the motor power ten times per second. A program or a
-// force law can reverse a force more often, but with less energy per cycle. The largest force, 8 N, moves 45 g back and
-// forth at 40 Hz with at most 1.1 m/s and a kinetic energy of at most 27 mJ. This energy raises the voltage of a 2200
-// uF capacitor at 18 V by 0.7 V. At 100 Hz the rise is 0.1 V. The losses of 41 W in the motor resistance lower the
-// supply voltage by 0.3 V. The sum of these changes is half of the bound. A test on the simulated board checks this
-// sum.
+// The frequency of an oscillation distinguishes a fault from normal operation. A step, a sag or a spike exceeds the
+// bound at most twice, at the start and at the end. After a step, the slow mean follows the voltage. A hand that swings
+// the arm reverses the motor power ten times per second. A force of 8 N at 40 Hz accelerates 45 g to 1.1 m/s, which
+// corresponds to 27 mJ. An energy of 27 mJ raises the voltage of a 2200 uF capacitor at 18 V by 0.7 V. At 100 Hz, the
+// voltage rise is 0.1 V. The losses of 41 W in the motor resistance lower the supply voltage by 0.3 V. The sum of these
+// voltage changes is half of the bound.
 //
 // The voltage divider and its capacitor form a low-pass filter with a time constant of 0.9 ms. The filter passes 98 %
 // of the amplitude at 35 Hz and 87 % at 100 Hz.
@@ -29,8 +27,8 @@ struct SupplyRipple {
   /// An oscillation of 35 Hz or more causes this number of alternating excursions within `within_periods`.
   static constexpr std::size_t alternations = 8;
   static constexpr std::uint32_t within_periods = periods_in(0.1f);
-  /// Time constant of the mean, which is close to `within_periods`. The mean stays in the middle of an oscillation and
-  /// follows a step before the next hand reversal. The value is a power of two, so that the division is a shift.
+  /// Time constant of the mean. The mean follows a voltage step, but not an oscillation. The value is a power of two,
+  /// so that the division is a shift.
   static constexpr std::int32_t mean_periods = 2048;
 
   std::int32_t tolerance_counts;  ///< protocol::supply_ripple_V in converter counts, in either direction from the mean
@@ -41,8 +39,8 @@ struct SupplyRipple {
   std::size_t next = 0, changes = 0;                             ///< next ring position; number of valid entries
 };
 
-/// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true while the last
-/// `alternations` alternating excursions are within `within_periods`.
+/// Checks the reading of period `now_periods`. Period numbers may be skipped and may wrap. Returns true while the last
+/// `alternations` alternating excursions occurred within `within_periods`.
 inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint32_t now_periods) {
   if (ripple.mean_counts < 0) ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;
   constexpr auto all = static_cast<std::uint32_t>(SupplyRipple::mean_periods);
