@@ -332,7 +332,7 @@ struct SurfaceEntry {
   float static_friction;    ///< 0..friction_maximum, relative to the normal force
   float dynamic_friction;   ///< 0..static_friction
   /// Life of the shape after it takes effect, 0..shape_life_maximum_s. A shape with infinite life exists until the
-  /// claim ends. A life of 0 means no shape.
+  /// claim ends. A shape with `life_s` 0 does not exist.
   float life_s;
 };
 

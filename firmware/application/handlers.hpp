@@ -8,7 +8,7 @@ extern "C" {
 [[noreturn]] void reset_handler();
 /// Handles all CPU faults, the non-maskable interrupt and all unexpected interrupts.
 [[noreturn]] void cpu_fault_handler();
-/// PendSV handler. Records the code location of the main loop after all other interrupts. The function
+/// PendSV handler, with the lowest priority of all interrupts. Records the code location of the main loop. The function
 /// drivers::CallAfterInterrupts::request() requests this handler.
 void hang_handler();
 /// Runs once per control period, at the end of the injected conversions.

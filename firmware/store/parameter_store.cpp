@@ -11,7 +11,7 @@ bool ParameterStore::settings_are_intact() const {
   return settings_.is_offered() || sum_of(settings_.used()) == settings_sum_;
 }
 
-// A damaged set is not replaced, so that the background check detects the damage.
+// A damaged parameter set is not replaced. The background check then detects the damage.
 control::Settings* ParameterStore::next_settings_slot() { return values_.is_intact() ? settings_.next() : nullptr; }
 
 void ParameterStore::offer(control::Settings& slot, const protocol::ParameterSet& set) {

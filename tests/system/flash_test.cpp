@@ -271,7 +271,8 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   const TemporaryDirectory directory;
   const auto called = directory.file("called");
   const auto fake = directory.file("openocd");
-  // The fake openocd finds an erased flash. The fake reports a verified image and prints the marker from the arguments.
+  // The fake openocd finds an erased flash. The fake openocd then reports that
+  // the image is verified, and prints the marker from its arguments.
   std::ofstream(fake) << "#!/bin/sh\ncase \"$*\" in *dump_image*) head -c 1000 /dev/zero >installed.bin; exit;; esac\n"
                       << "for word in \"$@\"; do echo \"$word\"; done >" << called << "\ncat image.hex >>" << called
                       << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";

@@ -30,7 +30,7 @@ struct EncoderWire {
   std::uint32_t since_periods = 0;
 };
 
-/// Checks the reading of period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
+/// Checks the timer count in the period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
 /// `dead_changes` changes between two neighboring counts within `within_periods`. Counting then restarts.
 inline bool is_dead(EncoderWire& wire, std::uint16_t timer_count, std::uint32_t now_periods) {
   if (timer_count == wire.count) return false;

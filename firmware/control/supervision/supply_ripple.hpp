@@ -39,8 +39,8 @@ struct SupplyRipple {
   std::size_t next = 0, changes = 0;                             ///< next ring position; number of valid entries
 };
 
-/// Checks the reading of period `now_periods`. Period numbers may be skipped and may wrap. Returns true while the last
-/// `alternations` alternating excursions occurred within `within_periods`.
+/// Checks the supply voltage in the period `now_periods`. Period numbers may be skipped and may wrap. Returns true
+/// while the last `alternations` alternating excursions occurred within `within_periods`.
 inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint32_t now_periods) {
   if (ripple.mean_counts < 0) ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;
   constexpr auto all = static_cast<std::uint32_t>(SupplyRipple::mean_periods);

@@ -42,8 +42,8 @@ inkwell_parameter row_of(const protocol::ParameterInfo& row) {
 }
 inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help}; }
 
-/// Returns a row as a C struct, or null after the last row. Rows are never moved or freed. Programs may read rows until
-/// the process exits.
+/// Returns a row as a C struct, or null after the last row. Rows are never moved or freed. A program may use a row
+/// until the process exits.
 template <class Row, class Table>
 const Row* row_at(const Table& table, std::size_t index) {
   static auto& rows = *new std::deque<Row>;

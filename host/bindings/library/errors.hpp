@@ -17,7 +17,7 @@ class BadArgument : public Error {
  public:
   using Error::Error;
 };
-/// The force was switched off without a call of this program.
+/// The board or another program switched the force off.
 class ForceLost : public Error {
  public:
   using Error::Error;

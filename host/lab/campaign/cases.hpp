@@ -85,8 +85,8 @@ struct Case {
 /// Returns the control case, then the faults, then the other events. Faults of three equivalent parts are listed for
 /// motor 2, which carries the load at the wall.
 std::vector<CaseFault> case_faults();
-/// Returns the same fault at another one of three equivalent parts (1 to 3): motor, leg, encoder, current sensor, or
-/// gimbal potentiometer. Faults of single parts are returned unchanged.
+/// Returns the same fault at another part of the same kind. The arm has three (1 to 3) of each kind: motor, leg,
+/// encoder, current sensor, or gimbal potentiometer. Faults of single parts are returned unchanged.
 CaseFault at_another(CaseFault fault, unsigned number);
 bool is_of_three(const CaseFault& fault);
 /// Lists each fault in each situation at each instant. The faults of the first and third equivalent parts follow, at

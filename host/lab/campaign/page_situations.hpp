@@ -16,7 +16,7 @@ namespace inkwell::campaign {
 std::string off_text(const Summary& summary);
 /// Definitions of the columns.
 std::string columns();
-/// Findings: cases that could not be run.
+/// The findings are the cases that could not be run.
 Section not_run(std::span<const Result> results);
 std::string tables(const Groups& groups, const std::vector<CaseFault>& faults);
 

@@ -1,4 +1,4 @@
-// Tests when board time waits for the host.
+// Tests the conditions for which board time waits for the host.
 #include <doctest/doctest.h>
 
 #include "boards/virtual/usb/host_pace.hpp"

@@ -121,7 +121,7 @@ TEST_CASE("late is more than a millisecond after the interval that the program n
   CHECK(!next_after(20));
   CHECK(!next_after(40));
   CHECK(next_after(41));
-  // If the force expires, the pause does not count as a delay.
+  // The time after an expired program force does not count as a delay.
   CHECK(!next_after(3000));
 }
 

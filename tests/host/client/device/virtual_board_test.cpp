@@ -1,4 +1,4 @@
-// Tests start and exit of the virtual board's process; shell scripts replace the program.
+// Tests how a program starts and stops a virtual board. Shell scripts replace the virtual board.
 #include <doctest/doctest.h>
 
 #include <signal.h>

@@ -1,4 +1,4 @@
-// Tests which characters of a file's names and texts are printed or written to other files.
+// Tests the replacement of unprintable characters in the names and texts of a file.
 #include <doctest/doctest.h>
 
 #include <fstream>

@@ -57,7 +57,7 @@ State state_after_force_off(std::vector<State> states) {
 
 }  // namespace
 
-TEST_CASE("the state after `force off` is not that of a pose from before the command") {
+TEST_CASE("`force off` reports a pose that the board sent after the command") {
   CHECK(state_after_force_off({State::active, State::active, State::ready}) == State::ready);
   CHECK(state_after_force_off({State::active, State::fault, State::ready}) == State::fault);
 }

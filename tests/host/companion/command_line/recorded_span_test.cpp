@@ -1,4 +1,4 @@
-// Tests which samples a recording of a given length contains, and how many samples are missing at its end.
+// Tests the samples of a recording with a given length, and the number of missing samples at its end.
 #include <doctest/doctest.h>
 
 #include "host/companion/command_line/recorded_span.hpp"

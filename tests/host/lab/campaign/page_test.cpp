@@ -196,7 +196,7 @@ TEST_CASE("energy is compared with that of the same instant") {
   const std::string text = text_of_page({slow, fast, hit, other});
   CHECK(text.find("the same situation at the same instant, the largest extra energy was 50.0 mJ") != std::string::npos);
   CHECK(text.find("extra energy is unknown") == std::string::npos);
-  // An instant without a fault-free case is not compared.
+  // A case is compared only with a fault-free case at the same instant.
   const std::string partly = text_of_page({slow, fast, hit, other, third});
   CHECK(partly.find("the largest extra energy was 50.0 mJ") != std::string::npos);
   CHECK(partly.find("unknown for some cases in motion,") != std::string::npos);
