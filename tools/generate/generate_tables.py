@@ -13,7 +13,6 @@ import re
 import sys
 import tomllib
 
-FORCE_LAW_FIRST_ID = 1000  # force_law_first_id in protocol/parameters.hpp
 NAME = re.compile(r"[a-zA-Z][a-zA-Z0-9_]*")
 AXIS = re.compile(r"_([1-3x-z])(?=_|$)")
 NUMBER = (int, float)
@@ -158,9 +157,8 @@ def check_parameters(table: Table, arm: dict | None) -> None:
     table.require_three_rows(("kind", "unit", "range", "group", "needs_force_off", "belongs_to_arm"))
     before = 0
     for name, row in table.rows.items():
-        if not before < row["id"] < FORCE_LAW_FIRST_ID:
-            table.fail(name, f"the id {row['id']} must be above {before} and below {FORCE_LAW_FIRST_ID}",
-                       "Choose a new id, and order the rows by id.")
+        if row["id"] <= before:
+            table.fail(name, f"the id {row['id']} must be above {before}", "Choose a new id, and order the rows by id.")
         before = row["id"]
         if isinstance(row["default"], str):
             if row["default"] != "arm":

@@ -37,12 +37,12 @@ int calibrate(const DeviceOptions& device, CalibrateOptions& options) {
 
 }  // namespace
 
-void add_calibrate_command(const Place& place) {
+void add_calibrate_command(const CommandContext& context) {
   const auto options = std::make_shared<CalibrateOptions>();
-  auto* command =
-      place.program.add_subcommand("calibrate",
-                                   "Guides through the calibration of inkwell, joint stops and gimbal potentiometers\n"
-                                   "You move the arm and press button 1; with --virtual a simulated hand does this.");
+  auto* command = context.program.add_subcommand(
+      "calibrate",
+      "Guides through the calibration of inkwell, joint stops and gimbal potentiometers\n"
+      "You move the arm and press button 1; with --virtual a simulated hand does this.");
   std::vector<std::string> names;
   for (const auto* offer : guides_of("calibrate")) names.emplace_back(offer->name);
   names.emplace_back("all");
@@ -61,8 +61,9 @@ void add_calibrate_command(const Place& place) {
                "inkwell calibrate\n"
                "inkwell calibrate pots --roll-range -2.58:2.58 --apply\n"
                "inkwell calibrate all --virtual --yes --json");
-  command->callback(
-      [place, options] { place.action = [&device = place.device, options] { return calibrate(device, *options); }; });
+  command->callback([context, options] {
+    context.action = [&device = context.device, options] { return calibrate(device, *options); };
+  });
 }
 
 }  // namespace inkwell::command_line

@@ -4,11 +4,11 @@
 
 namespace inkwell::command_line {
 
-void add_check_command(const Place& place) {
-  auto* command = place.program.add_subcommand("check", "Guides that check the wiring and the arm description");
+void add_check_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand("check", "Guides that check the wiring and the arm description");
   command->require_subcommand(1);
   add_examples(*command, "inkwell check connection\ninkwell check directions");
-  add_guides(*command, place, "check");
+  add_guides(*command, context, "check");
 }
 
 }  // namespace inkwell::command_line

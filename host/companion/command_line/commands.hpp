@@ -20,7 +20,7 @@ namespace inkwell::command_line {
 using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
 
 /// Arguments of the add_NAME_command() functions.
-struct Place {
+struct CommandContext {
   CLI::App& program;
   const DeviceOptions& device;
   Action& action;  ///< set when the command is chosen
@@ -49,7 +49,7 @@ struct Place {
   X(run)                    \
   X(flash)
 
-#define X(name) void add_##name##_command(const Place& place);
+#define X(name) void add_##name##_command(const CommandContext& context);
 INKWELL_COMMANDS(X)
 #undef X
 

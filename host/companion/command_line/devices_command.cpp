@@ -24,18 +24,18 @@ std::vector<Endpoint> found(const DeviceOptions& options) {
   return {device::find_arm(address)};
 }
 
-std::string place_of(const Endpoint& endpoint) {
+std::string location_of(const Endpoint& endpoint) {
   return endpoint.kind == Endpoint::Kind::usb ? std::string("USB") : fmt::format("usbip {}", endpoint.server.text());
 }
 
 struct Listed {
-  std::string serial_number, product, place;
+  std::string serial_number, product, location;
   std::string board;  ///< empty: not reported by the firmware, or the device did not answer
 };
 
 /// The list includes devices that do not answer. The information request works with every protocol version.
 Listed query_arm(const Endpoint& endpoint) {
-  Listed listed{endpoint.serial_number, endpoint.product, place_of(endpoint), {}};
+  Listed listed{endpoint.serial_number, endpoint.product, location_of(endpoint), {}};
   try {
     const auto information = device::Device(device::open_transport(endpoint)).information();
     listed.serial_number = information.serial_number;  // USB/IP device lists do not contain it
@@ -55,10 +55,10 @@ int list_devices(const DeviceOptions& options) {
       json.push_back({{"serial_number", each.serial_number},
                       {"product", each.product},
                       {"board", each.board},
-                      {"place", each.place}});
+                      {"place", each.location}});
     else
       fmt::print("{:<26} {:<28} {:<20} {}\n", each.serial_number, each.product,
-                 each.board.empty() ? "unknown board" : each.board, each.place);
+                 each.board.empty() ? "unknown board" : each.board, each.location);
   }
   if (options.json)
     fmt::print("{}\n", json.dump(2));
@@ -69,10 +69,10 @@ int list_devices(const DeviceOptions& options) {
 
 }  // namespace
 
-void add_devices_command(const Place& place) {
-  auto* command = place.program.add_subcommand("devices", "Lists the connected arms with serial number and board");
+void add_devices_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand("devices", "Lists the connected arms with serial number and board");
   add_examples(*command, "inkwell devices\ninkwell devices --usbip 127.0.0.1:3240 --json");
-  command->callback([place] { place.action = [&options = place.device] { return list_devices(options); }; });
+  command->callback([context] { context.action = [&options = context.device] { return list_devices(options); }; });
 }
 
 }  // namespace inkwell::command_line

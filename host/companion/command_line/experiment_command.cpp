@@ -66,9 +66,9 @@ int run_wall(DeviceOptions options, const WallCommandOptions& command) {
 
 }  // namespace
 
-void add_experiment_command(const Place& place) {
+void add_experiment_command(const CommandContext& context) {
   auto* command =
-      place.program.add_subcommand("experiment", "Experiments that record every control period and draw figures");
+      context.program.add_subcommand("experiment", "Experiments that record every control period and draw figures");
   command->require_subcommand(1);
   add_examples(*command, "inkwell experiment wall --virtual --out results");
   auto* wall = command->add_subcommand(
@@ -87,8 +87,8 @@ void add_experiment_command(const Place& place) {
                "inkwell experiment wall --virtual --out results\n"
                "inkwell experiment wall --virtual --arm boards/arms/paper.toml --out results-paper\n"
                "inkwell experiment wall --wall y- --out results");
-  wall->callback([place, wall_options] {
-    place.action = [&options = place.device, wall_options] { return run_wall(options, *wall_options); };
+  wall->callback([context, wall_options] {
+    context.action = [&options = context.device, wall_options] { return run_wall(options, *wall_options); };
   });
 }
 

@@ -184,9 +184,9 @@ int clear_fault(const DeviceOptions& options) {
 
 }  // namespace
 
-void add_fault_command(const Place& place) {
+void add_fault_command(const CommandContext& context) {
   auto* command =
-      place.program.add_subcommand("fault", "Shows the fault with cause and remedy, and saves the signals around it");
+      context.program.add_subcommand("fault", "Shows the fault with cause and remedy, and saves the signals around it");
   const auto fault_options = std::make_shared<FaultOptions>();
   command->require_subcommand(0, 1);
   auto* file = command
@@ -202,9 +202,9 @@ void add_fault_command(const Place& place) {
   add_examples(
       *command,
       "inkwell fault\ninkwell fault --elf build/board/inkwell.elf\ninkwell fault --out fault.h5\ninkwell fault clear");
-  command->callback([place, command, file, fault_options] {
+  command->callback([context, command, file, fault_options] {
     if (!command->get_subcommands().empty()) return;
-    place.action = [&options = place.device, file, fault_options] {
+    context.action = [&options = context.device, file, fault_options] {
       return file->count() == 0 ? show_fault(options, *fault_options) : save_black_box(options, *fault_options);
     };
   });
@@ -212,7 +212,7 @@ void add_fault_command(const Place& place) {
   cleared->excludes(file);
   cleared->excludes(elf);
   add_examples(*cleared, "inkwell fault clear");
-  cleared->callback([place] { place.action = [&options = place.device] { return clear_fault(options); }; });
+  cleared->callback([context] { context.action = [&options = context.device] { return clear_fault(options); }; });
 }
 
 }  // namespace inkwell::command_line

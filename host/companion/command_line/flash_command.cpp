@@ -136,8 +136,8 @@ int flash(const DeviceOptions& options, FlashOptions given) {
 
 }  // namespace
 
-void add_flash_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
+void add_flash_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand(
       "flash",
       "Writes a firmware image to a board, verifies it and starts it\n"
       "\n"
@@ -183,7 +183,7 @@ void add_flash_command(const Place& place) {
       "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd --board omni_driver\n"
       "inkwell flash --swd --interface cmsis-dap build/board/inkwell.elf\ninkwell flash --virtual board.flash");
   command->callback(
-      [place, given] { place.action = [&options = place.device, given] { return flash(options, *given); }; });
+      [context, given] { context.action = [&options = context.device, given] { return flash(options, *given); }; });
 }
 
 }  // namespace inkwell::command_line

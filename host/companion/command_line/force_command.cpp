@@ -69,12 +69,13 @@ int keep_on(const DeviceOptions& options, double seconds) {
 
 }  // namespace
 
-void add_force_command(const Place& place) {
-  auto* command = place.program.add_subcommand("force", "Shows whether the force is on, or switches it on or off");
+void add_force_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand("force", "Shows whether the force is on, or switches it on or off");
   command->require_subcommand(0, 1);
   add_examples(*command, "inkwell force\ninkwell force on\ninkwell force off");
-  command->callback([place, command] {
-    if (command->get_subcommands().empty()) place.action = [&options = place.device] { return show_force(options); };
+  command->callback([context, command] {
+    if (command->get_subcommands().empty())
+      context.action = [&options = context.device] { return show_force(options); };
   });
   auto* on = command->add_subcommand("on", "Switches the force on until Ctrl-C; walls then push back");
   const auto seconds = std::make_shared<double>(0);
@@ -82,11 +83,12 @@ void add_force_command(const Place& place) {
       ->type_name("SECONDS")
       ->check(more_than_zero());
   add_examples(*on, "inkwell force on\ninkwell force on --seconds 10");
-  on->callback(
-      [place, seconds] { place.action = [&options = place.device, seconds] { return keep_on(options, *seconds); }; });
+  on->callback([context, seconds] {
+    context.action = [&options = context.device, seconds] { return keep_on(options, *seconds); };
+  });
   auto* off = command->add_subcommand("off", "Switches the force off, whichever program switched it on");
   add_examples(*off, "inkwell force off");
-  off->callback([place] { place.action = [&options = place.device] { return switch_off(options); }; });
+  off->callback([context] { context.action = [&options = context.device] { return switch_off(options); }; });
 }
 
 }  // namespace inkwell::command_line

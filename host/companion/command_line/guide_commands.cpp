@@ -13,7 +13,7 @@ std::vector<const guides::Offer*> guides_of(std::string_view group) {
 }
 
 void add_guides(
-    CLI::App& command, const Place& place, std::string_view group,
+    CLI::App& command, const CommandContext& context, std::string_view group,
     const std::function<void(CLI::App& guide, const guides::Offer& offer, GuideOptions& options)>& add_options) {
   for (const auto* offer : guides_of(group)) {
     const auto options = std::make_shared<GuideOptions>();
@@ -21,8 +21,8 @@ void add_guides(
     if (add_options) add_options(*guide, *offer, *options);
     options->consent.add_to(*guide);
     add_examples(*guide, fmt::format("inkwell {0} {1}\ninkwell {0} {1} --virtual --yes --json", group, offer->name));
-    guide->callback([place, options, offer] {
-      place.action = [&device = place.device, options, offer] {
+    guide->callback([context, options, offer] {
+      context.action = [&device = context.device, options, offer] {
         return run_guides(device, options->consent, {offer}, options->choices);
       };
     });

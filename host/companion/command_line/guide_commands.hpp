@@ -21,7 +21,7 @@ std::vector<const guides::Offer*> guides_of(std::string_view group);
 
 /// Adds a subcommand for each guide of a group. `add_options` adds the options of one guide.
 void add_guides(
-    CLI::App& command, const Place& place, std::string_view group,
+    CLI::App& command, const CommandContext& context, std::string_view group,
     const std::function<void(CLI::App& guide, const guides::Offer& offer, GuideOptions& options)>& add_options = {});
 
 }  // namespace inkwell::command_line

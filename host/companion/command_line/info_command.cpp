@@ -101,12 +101,12 @@ void print(const device::Information& information, const protocol::StoreReport& 
 
 }  // namespace
 
-void add_info_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
+void add_info_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand(
       "info", "Shows the connected device: versions, counters, state, and fault with remedy");
   add_examples(*command, "inkwell info\ninkwell info --virtual --json");
-  command->callback([place] {
-    place.action = [&options = place.device] {
+  command->callback([context] {
+    context.action = [&options = context.device] {
       const auto connection = connect(options);
       const auto pose = connection.device->read_pose(500ms);
       const auto information = connection.device->information();

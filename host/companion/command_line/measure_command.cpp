@@ -110,8 +110,8 @@ int measure_delay(const DeviceOptions& options, const DelayOptions& wanted) {
 
 }  // namespace
 
-void add_measure_command(const Place& place) {
-  auto* command = place.program.add_subcommand("measure", "Measures the timing of the arm");
+void add_measure_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand("measure", "Measures the timing of the arm");
   command->require_subcommand(1);
   add_examples(*command, "inkwell measure delay --virtual");
   auto* delay = command->add_subcommand(
@@ -126,8 +126,8 @@ void add_measure_command(const Place& place) {
   delay->add_flag("--yes", wanted->is_held,
                   "Confirm that you hold the stylus of the real arm, which pushes with up to 0.5 N");
   add_examples(*delay, "inkwell measure delay --virtual\ninkwell measure delay --recordings 20 --yes --json");
-  delay->callback([place, wanted] {
-    place.action = [&options = place.device, wanted] { return measure_delay(options, *wanted); };
+  delay->callback([context, wanted] {
+    context.action = [&options = context.device, wanted] { return measure_delay(options, *wanted); };
   });
 }
 

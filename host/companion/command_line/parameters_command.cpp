@@ -194,13 +194,13 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
 /// Adds subcommands to `inkwell parameters`. Subcommands that change parameters have the flag --store.
 struct Subcommands {
   CLI::App& command;
-  const Place& place;
+  const CommandContext& context;
   std::shared_ptr<bool> store = std::make_shared<bool>(false);
 
   CLI::App* add(const char* name, const char* help, const char* examples, std::function<int()> run) const {
     auto* subcommand = command.add_subcommand(name, help);
     add_examples(*subcommand, examples);
-    subcommand->callback([place = place, run] { place.action = run; });
+    subcommand->callback([context = context, run] { context.action = run; });
     return subcommand;
   }
   CLI::App* add_change(const char* name, const char* help, const char* examples, std::function<int()> run) const {
@@ -264,17 +264,17 @@ void add_file_commands(const Subcommands& subcommands, const DeviceOptions& opti
 
 }  // namespace
 
-void add_parameters_command(const Place& place) {
+void add_parameters_command(const CommandContext& context) {
   auto* command =
-      place.program.add_subcommand("parameters",
-                                   "Lists all parameters with value, default, range and unit, or runs a subcommand\n"
-                                   "Changed values are lost when the board loses power. To store them on the board, "
-                                   "use `inkwell parameters store`,\n"
-                                   "or add --store to the command that changes them.");
+      context.program.add_subcommand("parameters",
+                                     "Lists all parameters with value, default, range and unit, or runs a subcommand\n"
+                                     "Changed values are lost when the board loses power. To store them on the board, "
+                                     "use `inkwell parameters store`,\n"
+                                     "or add --store to the command that changes them.");
   command->require_subcommand(0, 1);
-  const DeviceOptions& options = place.device;
-  command->callback([place, command] {
-    if (command->get_subcommands().empty()) place.action = [&options = place.device] { return list(options); };
+  const DeviceOptions& options = context.device;
+  command->callback([context, command] {
+    if (command->get_subcommands().empty()) context.action = [&options = context.device] { return list(options); };
   });
 
   add_examples(*command,
@@ -283,10 +283,10 @@ void add_parameters_command(const Place& place) {
                "inkwell parameters save soft.toml\n"
                "inkwell parameters store");
 
-  const Subcommands subcommands{*command, place};
+  const Subcommands subcommands{*command, context};
   add_get_and_set(subcommands, options);
   add_file_commands(subcommands, options);
-  add_store_commands(*command, place);
+  add_store_commands(*command, context);
 }
 
 }  // namespace inkwell::command_line

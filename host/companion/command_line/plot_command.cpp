@@ -21,7 +21,7 @@ namespace {
 struct PlotOptions {
   std::string file;
   std::string signals;
-  std::string place;
+  std::string output;
   std::optional<double> from_s, to_s;
   bool as_in_paper = false;
   std::string over;
@@ -36,15 +36,15 @@ void print_pictures(const DeviceOptions& options, const std::vector<std::string>
 }
 
 std::vector<std::string> draw_as_in_paper(const recording::Recording& recording, const PlotOptions& options) {
-  const auto folder =
-      options.place.empty() ? std::filesystem::path(options.file).parent_path() : std::filesystem::path(options.place);
+  const auto folder = options.output.empty() ? std::filesystem::path(options.file).parent_path()
+                                             : std::filesystem::path(options.output);
   return experiment::draw_figures(recording, folder, {.wall = {}, .from_s = options.from_s, .to_s = options.to_s});
 }
 
 std::string draw(recording::Recording recording, const PlotOptions& options) {
-  if (!options.place.empty() && std::filesystem::path(options.place).extension() != ".png")
+  if (!options.output.empty() && std::filesystem::path(options.output).extension() != ".png")
     throw UsageError(
-        fmt::format("{} does not end in .png. Figures are PNG files; give a name that ends in .png.", options.place));
+        fmt::format("{} does not end in .png. Figures are PNG files; give a name that ends in .png.", options.output));
   recording::FigureOptions figure{.quantities = {}, .from_s = options.from_s.value_or(0), .to_s = options.to_s};
   std::optional<recording::Overlay> over;
   if (!options.over.empty()) {
@@ -59,7 +59,7 @@ std::string draw(recording::Recording recording, const PlotOptions& options) {
     throw UsageError(error.what());
   }
   const std::string picture =
-      options.place.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.place;
+      options.output.empty() ? std::filesystem::path(options.file).replace_extension(".png").string() : options.output;
   recording::draw_figure(recording, figure, picture);
   return picture;
 }
@@ -75,8 +75,8 @@ int plot(const DeviceOptions& device_options, const PlotOptions& options) {
 
 }  // namespace
 
-void add_plot_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
+void add_plot_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand(
       "plot", "Plots a recording over time with one pane per unit, or like the paper's figures");
   const auto plot_options = std::make_shared<PlotOptions>();
   command->add_option("FILE", plot_options->file, "Recording from `inkwell record` or `inkwell experiment`")
@@ -104,15 +104,15 @@ void add_plot_command(const Place& place) {
   command->add_option("--to", plot_options->to_s, "End time after the first sample")
       ->type_name("SECONDS")
       ->check(more_than_zero());
-  command->add_option("--out", plot_options->place, "PNG file, or folder for --paper. Default: next to FILE")
+  command->add_option("--out", plot_options->output, "PNG file, or folder for --paper. Default: next to FILE")
       ->type_name("PLACE");
   add_examples(*command,
                "inkwell plot push.h5 --signals force_N,position_z_m --from 1 --to 2.5 --out push.png\n"
                "inkwell plot results/recording.csv --signals current_1_A,true_current_1_A\n"
                "inkwell plot soft.h5 --over stiff.h5 --align touch --signals force_N\n"
                "inkwell plot results/recording.csv --paper --out figures");
-  command->callback([place, plot_options] {
-    place.action = [&options = place.device, plot_options] { return plot(options, *plot_options); };
+  command->callback([context, plot_options] {
+    context.action = [&options = context.device, plot_options] { return plot(options, *plot_options); };
   });
 }
 

@@ -47,8 +47,8 @@ int run(int argument_count, char** arguments) {
   DeviceOptions options;
   Action action;
   options.add_to(program);
-  const Place place{program, options, action, add_window_options(program, options, action)};
-#define X(name) add_##name##_command(place);
+  const CommandContext context{program, options, action, add_window_options(program, options, action)};
+#define X(name) add_##name##_command(context);
   INKWELL_COMMANDS(X)
 #undef X
   add_moved_commands(program);

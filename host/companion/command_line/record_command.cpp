@@ -213,8 +213,8 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
 
 }  // namespace
 
-void add_record_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
+void add_record_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand(
       "record", "Records signals at every control period, until Ctrl-C or for a given time");
   const auto record_options = std::make_shared<RecordOptions>();
   command
@@ -239,8 +239,8 @@ void add_record_command(const Place& place) {
   add_examples(*command,
                "inkwell record push.h5 --mark-key --force\n"
                "inkwell record push.csv --signals force_N,position_z_m --seconds 10");
-  command->callback([place, record_options] {
-    place.action = [&options = place.device, record_options] { return record(options, *record_options); };
+  command->callback([context, record_options] {
+    context.action = [&options = context.device, record_options] { return record(options, *record_options); };
   });
 }
 

@@ -88,7 +88,7 @@ int print_log(const std::string& file) {
 
 }  // namespace
 
-void add_replay_command(const Place& place) {
+void add_replay_command(const CommandContext& context) {
   struct ReplayOptions {
     std::string file;
     std::string over;
@@ -96,8 +96,8 @@ void add_replay_command(const Place& place) {
     bool information = false;
     bool log = false;
   };
-  auto* command =
-      place.program.add_subcommand("replay", "Opens a recording in the window, or describes it with --info or --json");
+  auto* command = context.program.add_subcommand(
+      "replay", "Opens a recording in the window, or describes it with --info or --json");
   const auto replay_options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", replay_options->file, "Recording from `inkwell record` or `inkwell experiment`")
       ->required();
@@ -111,12 +111,12 @@ void add_replay_command(const Place& place) {
   add_examples(*command,
                "inkwell replay push.h5\ninkwell replay soft.h5 stiff.h5 --align touch\n"
                "inkwell replay push.h5 --info\ninkwell replay push.h5 --log > push.txt");
-  command->callback([place, replay_options] {
-    place.action = [place, replay_options] {
+  command->callback([context, replay_options] {
+    context.action = [context, replay_options] {
       if (replay_options->log) return print_log(replay_options->file);
-      return place.device.json || replay_options->information
-                 ? describe(place.device, replay_options->file)
-                 : place.open_window({replay_options->file, replay_options->over, replay_options->align});
+      return context.device.json || replay_options->information
+                 ? describe(context.device, replay_options->file)
+                 : context.open_window({replay_options->file, replay_options->over, replay_options->align});
     };
   });
 }

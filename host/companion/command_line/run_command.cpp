@@ -89,8 +89,8 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
 
 }  // namespace
 
-void add_run_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
+void add_run_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand(
       "run",
       "Runs a program for the Omni's libraries (HDAPI, CHAI3D) on this arm\n"
       "\n"
@@ -103,11 +103,11 @@ void add_run_command(const Place& place) {
   own->add_to(*command);
   command->prefix_command();
   // After "--" CLI11 passes the remaining words to the parser of the main program.
-  command->preparse_callback([&parser = place.program](std::size_t) { parser.prefix_command(); });
+  command->preparse_callback([&parser = context.program](std::size_t) { parser.prefix_command(); });
   add_examples(*command, "inkwell run ./01-mydevice\ninkwell run --virtual ./HelloHapticDevice");
-  command->callback([place, own, command] {
+  command->callback([context, own, command] {
     const bool marked = command->remaining().empty();
-    place.action = [&given = place.device, own, words = (marked ? place.program : *command).remaining()] {
+    context.action = [&given = context.device, own, words = (marked ? context.program : *command).remaining()] {
       const bool before = given.is_virtual || !given.usbip.empty() || !given.serial_number.empty();
       return run(before ? given : *own, words);
     };

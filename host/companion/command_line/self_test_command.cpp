@@ -86,14 +86,14 @@ int test(const DeviceOptions& options, bool only_last) {
 
 }  // namespace
 
-void add_self_test_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
+void add_self_test_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand(
       "self-test", "Tests motors, bridges, sensors and wires; shows result, figure and remedy of each item");
   const auto only_last = std::make_shared<bool>(false);
   command->add_flag("--last", *only_last, "Show the results of the last test, without a new test");
   add_examples(*command, "inkwell self-test\ninkwell self-test --last\ninkwell self-test --json");
-  command->callback([place, only_last] {
-    place.action = [&options = place.device, only_last] { return test(options, *only_last); };
+  command->callback([context, only_last] {
+    context.action = [&options = context.device, only_last] { return test(options, *only_last); };
   });
 }
 

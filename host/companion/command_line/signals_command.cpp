@@ -24,11 +24,11 @@ int list_signals(const DeviceOptions& options) {
 
 }  // namespace
 
-void add_signals_command(const Place& place) {
+void add_signals_command(const CommandContext& context) {
   auto* command =
-      place.program.add_subcommand("signals", "Lists all signals that can be recorded, with unit; needs no device");
+      context.program.add_subcommand("signals", "Lists all signals that can be recorded, with unit; needs no device");
   add_examples(*command, "inkwell signals");
-  command->callback([place] { place.action = [&options = place.device] { return list_signals(options); }; });
+  command->callback([context] { context.action = [&options = context.device] { return list_signals(options); }; });
 }
 
 }  // namespace inkwell::command_line

@@ -165,13 +165,13 @@ void print_unstored(const DeviceOptions& options, bool is_stored) {
                options.flash.string());
 }
 
-void add_store_commands(CLI::App& parameters, const Place& place) {
+void add_store_commands(CLI::App& parameters, const CommandContext& context) {
   const auto add = [&](const char* name, const char* help, std::function<int()> run) {
     auto* command = parameters.add_subcommand(name, help);
-    command->callback([place, run] { place.action = run; });
+    command->callback([context, run] { context.action = run; });
     return command;
   };
-  const DeviceOptions& options = place.device;
+  const DeviceOptions& options = context.device;
   add_examples(*add("store", "Stores the current parameters on the board, so that they survive power loss",
                     [&options] { return store(options); }),
                "inkwell parameters store\ninkwell parameters store --json");

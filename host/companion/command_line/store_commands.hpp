@@ -9,6 +9,6 @@ namespace inkwell::command_line {
 /// prevents this loss.
 void print_unstored(const DeviceOptions& options, bool is_stored);
 
-void add_store_commands(CLI::App& parameters, const Place& place);
+void add_store_commands(CLI::App& parameters, const CommandContext& context);
 
 }  // namespace inkwell::command_line

@@ -23,12 +23,12 @@ void add_loop_options(CLI::App& guide, guides::CurrentLoopOptions& loop) {
 
 }  // namespace
 
-void add_tune_command(const Place& place) {
-  auto* command = place.program.add_subcommand("tune", "Guides that determine parameters by measurement");
+void add_tune_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand("tune", "Guides that determine parameters by measurement");
   command->require_subcommand(1);
   add_examples(*command,
                "inkwell tune current-loop\ninkwell tune current-loop --motor 2 --bandwidth 1500 --yes --apply");
-  add_guides(*command, place, "tune", [](CLI::App& guide, const guides::Offer& offer, GuideOptions& options) {
+  add_guides(*command, context, "tune", [](CLI::App& guide, const guides::Offer& offer, GuideOptions& options) {
     if (&offer == &guides::current_loop_guide) add_loop_options(guide, options.choices.current_loop);
   });
 }

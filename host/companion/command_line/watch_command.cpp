@@ -122,8 +122,8 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
 
 }  // namespace
 
-void add_watch_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
+void add_watch_command(const CommandContext& context) {
+  auto* command = context.program.add_subcommand(
       "watch", "Prints the live pose: position, force, buttons and state, ten lines per second");
   const auto watch_options = std::make_shared<WatchOptions>();
   command->add_option("--seconds", watch_options->seconds, "Stop after this board time. Default: at Ctrl+C")
@@ -134,8 +134,8 @@ void add_watch_command(const Place& place) {
       ->check(number_within(0.1, 1000.0))
       ->capture_default_str();
   add_examples(*command, "inkwell watch\ninkwell watch --virtual --seconds 2 --rate 100 --json");
-  command->callback([place, watch_options] {
-    place.action = [&options = place.device, watch_options] { return watch(options, *watch_options); };
+  command->callback([context, watch_options] {
+    context.action = [&options = context.device, watch_options] { return watch(options, *watch_options); };
   });
 }
 

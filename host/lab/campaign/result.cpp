@@ -36,7 +36,7 @@ struct nlohmann::adl_serializer<inkwell::protocol::Fault> {
     const auto row = std::ranges::find(inkwell::protocol::fault_table, name, &inkwell::protocol::CodeInfo::name);
     if (!name.empty() && row == inkwell::protocol::fault_table.end())
       throw inkwell::device::Error(
-          fmt::format("This is no result of a case by this version: the firmware has no fault `{}`. Remove it, and run "
+          fmt::format("This file is not a result of this version: the firmware has no fault `{}`. Remove it, and run "
                       "the case again.",
                       name));
     fault = name.empty() ? inkwell::protocol::Fault::none : static_cast<inkwell::protocol::Fault>(row->code);
@@ -55,10 +55,10 @@ static void from_json(const nlohmann::json& in, CaseFault& fault) {
   const auto& name = in.get_ref<const std::string&>();
   const auto found = find_fault(name);
   if (!found)
-    throw device::Error(
-        fmt::format("This is the result of the fault `{}`, which is in no case of this version. Remove it, and run the "
-                    "missing cases.",
-                    name));
+    throw device::Error(fmt::format(
+        "This file is the result of the fault `{}`, which this version does not inject. Remove the file, and "
+        "run the missing cases.",
+        name));
   fault = *found;
 }
 
@@ -68,8 +68,8 @@ static void from_json(const nlohmann::json& in, CaseSituation& situation) {
   const auto found = find_situation(name);
   if (!found)
     throw device::Error(
-        fmt::format("This is the result of the situation `{}`, which is in no case of this version. Remove it, and run "
-                    "the missing cases.",
+        fmt::format("This file is the result of the situation `{}`, which this version does not have. Remove the file, "
+                    "and run the missing cases.",
                     name));
   situation = *found;
 }
@@ -97,7 +97,7 @@ static void from_json(const nlohmann::json& in, Recovery& recovery) {
       return;
     }
   throw device::Error(
-      fmt::format("This is no result of a case by this version: there is no recovery `{}`. Remove it, and run the case "
+      fmt::format("This file is not a result of this version: there is no recovery `{}`. Remove it, and run the case "
                   "again.",
                   name));
 }
@@ -119,7 +119,7 @@ void require_counts(const nlohmann::json& result) {
   for (const char* name : {"number", "phase", "restarts"}) {
     const auto& value = result.at(name);
     if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<unsigned>::max())
-      throw device::Error(fmt::format("This is no result of a case: {} is {}, which is no count. Run the case again.",
+      throw device::Error(fmt::format("This file is not a result: {} is {}, which is not a count. Run the case again.",
                                       name, value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
   }
 }
@@ -178,9 +178,8 @@ Result parse_result(const std::string& text) {
     return result.get<Result>();
   } catch (const nlohmann::json::exception& error) {
     const std::string_view reason = error.what();  // starts with an error number in brackets
-    throw device::Error(
-        fmt::format("This is no result of a case by this version: {}. Remove it, and run the case again.",
-                    reason.substr(std::min(reason.size(), reason.find("] ") + 2))));
+    throw device::Error(fmt::format("This file is not a result of this version: {}. Remove it, and run the case again.",
+                                    reason.substr(std::min(reason.size(), reason.find("] ") + 2))));
   }
 }
 
@@ -213,8 +212,8 @@ std::vector<Result> load_all(const std::filesystem::path& directory) {
       const std::string name = Case{result.number, result.fault, result.situation, result.phase}.name();
       if (result.number == 0 || result.number > cases.size() || cases[result.number - 1].name() != name)
         throw device::Error(
-            fmt::format("This is the result of `{}`, which is no case of that number in this version. Remove it, and "
-                        "run the missing cases.",
+            fmt::format("This file is the result of `{}`, which is not the case with this number in this version. "
+                        "Remove the file, and run the missing cases.",
                         name));
     } catch (const device::Error& error) {
       throw device::Error(fmt::format("{}: {}", entry.path().string(), error.what()));

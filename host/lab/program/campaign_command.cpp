@@ -1,10 +1,8 @@
 #include "host/lab/program/commands.hpp"
 
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +15,7 @@
 #include "host/lab/campaign/page.hpp"
 #include "host/lab/campaign/result.hpp"
 #include "host/lab/campaign/run.hpp"
+#include "host/lab/program/parallel.hpp"
 
 namespace inkwell::lab {
 namespace {
@@ -64,38 +63,40 @@ void make_folder_of_page(const CampaignOptions& command) {
   make_folder(campaign::folder_of_details(command.page), "--page");
 }
 
+void print_result(const Case& the_case, const campaign::Result& result) {
+  const std::string off = result.off_after_s
+                              ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
+                              : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
+  const std::string position = result.place.empty() ? "" : " at " + result.place;
+  const std::string text = campaign::fault_text(result);
+  fmt::print("{:5} {}{}: {}\n", the_case.number, the_case.name(), position,
+             result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", text.empty() ? "-" : text, off,
+                                                result.peak_force_N, campaign::name_of(result.recovery))
+                                  : result.error);
+  std::fflush(stdout);
+}
+
 /// Runs each case on a separate board, with `jobs` boards in parallel. Returns exit code 1 if a case could not be run.
 int run_cases(const DeviceOptions& options, const CampaignOptions& command, const std::vector<Case>& cases) {
   make_folder(command.folder, "--out");
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
-  std::atomic<std::size_t> next{0}, failed{0};
+  std::size_t failed = 0;
   std::mutex printing;
   std::string trouble;
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < cases.size();) try {
-        const auto result = campaign::run_case(cases[i], board);
-        campaign::save(result, command.folder);
-        const std::lock_guard lock(printing);
-        if (!result.error.empty()) ++failed;
-        const std::string off = result.off_after_s
-                                    ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
-                                    : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
-        const std::string place = result.place.empty() ? "" : " at " + result.place;
-        const std::string text = campaign::fault_text(result);
-        fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,
-                   result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", text.empty() ? "-" : text, off,
-                                                      result.peak_force_N, campaign::name_of(result.recovery))
-                                        : result.error);
-        std::fflush(stdout);
-      } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
-        const std::lock_guard lock(printing);
-        trouble = error.what();
-        next = cases.size();
-      }
-  };
-  std::vector<std::thread> workers;
-  for (unsigned i = 0; i < command.jobs; ++i) workers.emplace_back(work);
-  for (auto& worker : workers) worker.join();
+  run_in_parallel(command.jobs, cases.size(), [&](std::size_t i) {
+    try {
+      const auto result = campaign::run_case(cases[i], board);
+      campaign::save(result, command.folder);
+      const std::lock_guard lock(printing);
+      if (!result.error.empty()) ++failed;
+      print_result(cases[i], result);
+      return true;
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(printing);
+      trouble = error.what();
+      return false;
+    }
+  });
   if (!trouble.empty()) throw device::Error(trouble);
   return failed > 0 ? 1 : 0;
 }
@@ -137,17 +138,14 @@ int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
 std::vector<campaign::Result> results_of(const DeviceOptions& options, unsigned jobs, const std::vector<Case>& cases) {
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
   std::vector<campaign::Result> results(cases.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < cases.size();) try {
-        results[i] = campaign::run_case(cases[i], board);
-      } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
-        results[i].error = error.what();
-      }
-  };
-  std::vector<std::thread> workers;
-  for (unsigned i = 0; i < jobs; ++i) workers.emplace_back(work);
-  for (auto& worker : workers) worker.join();
+  run_in_parallel(jobs, cases.size(), [&](std::size_t i) {
+    try {
+      results[i] = campaign::run_case(cases[i], board);
+    } catch (const std::exception& error) {
+      results[i].error = error.what();
+    }
+    return true;
+  });
   return results;
 }
 
@@ -203,9 +201,9 @@ void add_jobs(CLI::App& command, CampaignOptions& options) {
 
 }  // namespace
 
-void add_campaign_command(const Place& place) {
+void add_campaign_command(const CommandContext& context) {
   const auto options = std::make_shared<CampaignOptions>();
-  auto* command = place.program.add_subcommand(
+  auto* command = context.program.add_subcommand(
       "campaign",
       "Runs every fault in every situation on virtual boards, and writes the results as pages\n"
       "Without a subcommand, runs the cases that have no result yet, then writes the pages.");
@@ -218,16 +216,17 @@ void add_campaign_command(const Place& place) {
       "inkwell-lab campaign --jobs 8\n"
       "inkwell-lab campaign list --numbers | parallel -S one,two inkwell-lab campaign run {} --out /shared/results\n"
       "inkwell-lab campaign merge /shared/results --page docs/campaign.md");
-  command->callback([place, command, options] {
+  command->callback([context, command, options] {
     if (command->get_subcommands().empty())
-      place.action = [&device = place.device, options] { return run_missing(device, *options); };
+      context.action = [&device = context.device, options] { return run_missing(device, *options); };
   });
 
   auto* listed = command->add_subcommand("list", "Lists the cases with their numbers");
   listed->add_flag("--numbers", options->only_numbers, "Print only the numbers, for GNU parallel and batch systems");
   add_lab_examples(*listed, "inkwell-lab campaign list\ninkwell-lab campaign list --numbers");
-  listed->callback(
-      [place, options] { place.action = [&device = place.device, options] { return list_cases(device, *options); }; });
+  listed->callback([context, options] {
+    context.action = [&device = context.device, options] { return list_cases(device, *options); };
+  });
 
   auto* runs = command->add_subcommand("run", "Runs cases by number and writes one result file per case");
   runs->add_option("case", options->numbers, "Case numbers")->required()->type_name("NUMBER");
@@ -235,8 +234,9 @@ void add_campaign_command(const Place& place) {
   add_jobs(*runs, *options);
   add_lab_examples(
       *runs, "inkwell-lab campaign run 17 --out results\ninkwell-lab campaign run 17 18 19 --jobs 3 --out results");
-  runs->callback(
-      [place, options] { place.action = [&device = place.device, options] { return run_chosen(device, *options); }; });
+  runs->callback([context, options] {
+    context.action = [&device = context.device, options] { return run_chosen(device, *options); };
+  });
 
   auto* checks = command->add_subcommand(
       "check",
@@ -244,14 +244,15 @@ void add_campaign_command(const Place& place) {
       "Exit code 1: a fault was detected too late or as another fault, or its effect was too large.");
   add_jobs(*checks, *options);
   add_lab_examples(*checks, "inkwell-lab campaign check --jobs 8");
-  checks->callback(
-      [place, options] { place.action = [&device = place.device, options] { return check_known(device, *options); }; });
+  checks->callback([context, options] {
+    context.action = [&device = context.device, options] { return check_known(device, *options); };
+  });
 
   auto* merges = command->add_subcommand("merge", "Writes the pages from the existing results");
   merges->add_option("results", options->folder, "Folder with the results")->required()->type_name("FOLDER");
   add_page(*merges, *options);
   add_lab_examples(*merges, "inkwell-lab campaign merge results --page docs/campaign.md");
-  merges->callback([place, options] { place.action = [options] { return merge_results(*options); }; });
+  merges->callback([context, options] { context.action = [options] { return merge_results(*options); }; });
 }
 
 }  // namespace inkwell::lab

@@ -16,7 +16,7 @@
 namespace inkwell::lab {
 
 /// Arguments of the functions that add commands.
-struct Place {
+struct CommandContext {
   CLI::App& program;
   const command_line::DeviceOptions& device;
   command_line::Action& action;  ///< set when the command is chosen
@@ -27,7 +27,7 @@ struct Place {
   X(campaign)                   \
   X(soak)
 
-#define X(name) void add_##name##_command(const Place& place);
+#define X(name) void add_##name##_command(const CommandContext& context);
 INKWELL_LAB_COMMANDS(X)
 #undef X
 

@@ -27,8 +27,8 @@ int main(int argument_count, char** arguments) {
   command_line::DeviceOptions options;
   command_line::Action action;
   options.add_board_to(program);
-  const lab::Place place{program, options, action};
-#define X(name) lab::add_##name##_command(place);
+  const lab::CommandContext context{program, options, action};
+#define X(name) lab::add_##name##_command(context);
   INKWELL_LAB_COMMANDS(X)
 #undef X
   return command_line::run_program(program, argument_count, arguments, action);

@@ -1,7 +1,6 @@
 #include "host/lab/program/commands.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -9,7 +8,6 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +15,7 @@
 #include "host/client/command_line/help.hpp"
 #include "host/client/command_line/interrupt.hpp"
 #include "host/client/recording/write_text.hpp"
+#include "host/lab/program/parallel.hpp"
 #include "host/lab/soak/result.hpp"
 #include "host/lab/soak/run.hpp"
 
@@ -79,7 +78,6 @@ Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
   const auto [choices, numbers] = plan_of(command);
   Outcome outcome{{choices.seed, choices.sitting_s, choices.use_s, false, {}}, ""};
   std::vector<soak::Sitting> sittings(numbers.size());
-  std::atomic<std::size_t> next{0};
   std::mutex printing;
   const InterruptGuard interrupt;
   const auto is_stopped = [&] { return interrupt.is_interrupted(); };
@@ -89,18 +87,17 @@ Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
     fmt::print("{}", text);
     std::fflush(stdout);
   };
-  const auto work = [&] {
-    for (std::size_t i; !is_stopped() && (i = next++) < numbers.size();) try {
-        sittings[i] = soak::run_sitting(numbers[i], choices, board, print_text, is_stopped);
-      } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
-        const std::lock_guard lock(printing);
-        outcome.trouble = fmt::format("Sitting {}: {}", numbers[i], error.what());
-        next = numbers.size();
-      }
-  };
-  std::vector<std::thread> workers;
-  for (unsigned i = 0; i < command.jobs; ++i) workers.emplace_back(work);
-  for (auto& worker : workers) worker.join();
+  run_in_parallel(command.jobs, numbers.size(), [&](std::size_t i) {
+    if (is_stopped()) return false;
+    try {
+      sittings[i] = soak::run_sitting(numbers[i], choices, board, print_text, is_stopped);
+      return true;
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(printing);
+      outcome.trouble = fmt::format("Sitting {}: {}", numbers[i], error.what());
+      return false;
+    }
+  });
   outcome.soak.stopped = is_stopped() || !outcome.trouble.empty();
   std::ranges::copy_if(sittings, std::back_inserter(outcome.soak.sittings),
                        [](const soak::Sitting& sitting) { return sitting.number != 0; });
@@ -119,9 +116,9 @@ int run_soak(const DeviceOptions& options, const SoakOptions& command) {
 
 }  // namespace
 
-void add_soak_command(const Place& place) {
+void add_soak_command(const CommandContext& context) {
   const auto options = std::make_shared<SoakOptions>();
-  auto* command = place.program.add_subcommand(
+  auto* command = context.program.add_subcommand(
       "soak",
       "Tests virtual boards with random use, faults, unplugged cables and parameter changes\n"
       "Ctrl-C stops the soak and prints the results so far. Exit code 1: the soak found a problem.");
@@ -154,8 +151,9 @@ void add_soak_command(const Place& place) {
   add_lab_examples(*command,
                    "inkwell-lab soak --seconds 3600 --jobs 8 --out soak.json\n"
                    "inkwell-lab soak --seed 1 --sitting 3");
-  command->callback(
-      [place, options] { place.action = [&device = place.device, options] { return run_soak(device, *options); }; });
+  command->callback([context, options] {
+    context.action = [&device = context.device, options] { return run_soak(device, *options); };
+  });
 }
 
 }  // namespace inkwell::lab

@@ -42,7 +42,7 @@ State state_after_clearing(Controller& controller, const Samples& samples, const
   return controller.state();
 }
 
-TEST_CASE("an encoder that jumps is told as such in that period, at each instant, and the reference is void") {
+TEST_CASE("a jump of an encoder raises its fault in the same period and makes the reference invalid") {
   const Settings settings = free_space();
   const Controller ready = tests::ready_controller(settings), active = tests::active_controller(settings);
   for (const bool with_force : {false, true})
@@ -101,7 +101,7 @@ TEST_CASE("a stylus that leaves the inkwell while a button chatters is no stuck 
   CHECK(controller.state() == State::ready);
 }
 
-TEST_CASE("a jump beside another fault, and one while it is told, void the reference as well") {
+TEST_CASE("a jump with or after another fault also makes the reference invalid") {
   const Settings settings = free_space();
   for (const bool at_once : {true, false}) {
     CAPTURE(at_once);

@@ -40,7 +40,7 @@ TEST_CASE("what is beyond the range, or no number, stays within it") {
   CHECK(report.position[2] == 32767);
 }
 
-TEST_CASE("the axes of a position are in their middle while nobody knows where the arm is, those of the gimbal tell") {
+TEST_CASE("without a reference, the position axes are in their middle and the gimbal axes are measured") {
   auto pose = example_pose();
   pose.position_m[1] = 0.05f;
   pose.gimbal_rad[1] = 0.2f;

@@ -76,7 +76,7 @@ std::string example(const protocol::InjectionInfo& row) {
 
 }  // namespace
 
-TEST_CASE("every fault of the table goes in, is told with its position, and is no longer told once it is healed") {
+TEST_CASE("every fault of the table is injected and reported with its position until it is removed") {
   for (const auto& row : protocol::injection_table) {
     CAPTURE(row.name);
     Rig rig;

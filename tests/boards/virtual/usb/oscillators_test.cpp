@@ -45,7 +45,7 @@ struct OtherBoard {
 
 }  // namespace
 
-TEST_CASE("a crystal that is off by what USB bears gives a pose in each bus frame of the host") {
+TEST_CASE("with the largest crystal error that USB tolerates, each bus frame of the host has a pose") {
   for (const int ppm : {-2'400, 50, 2'400}) {
     CAPTURE(ppm);
     OtherBoard other({.crystal_ppm = ppm});

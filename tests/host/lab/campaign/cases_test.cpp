@@ -114,23 +114,24 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 2);  // no temporary file remains
 
   std::ofstream(file_of(directory.path(), 9)) << "{\"number\": 9}";
-  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("case-00009.json: This is no result of a case"),
+  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("case-00009.json: This file is not a result"),
                        device::Error);
   CHECK_THROWS_WITH_AS(parse_result("{\"number\": "),
-                       doctest::Contains("by this version: parse error at line 1, column 12"), device::Error);
-  CHECK_THROWS_WITH_AS(parse_result("{}"), doctest::Contains("by this version: key 'number' not found. Remove it"),
+                       doctest::Contains("of this version: parse error at line 1, column 12"), device::Error);
+  CHECK_THROWS_WITH_AS(parse_result("{}"), doctest::Contains("of this version: key 'number' not found. Remove it"),
                        device::Error);
   Result of_another_list = result;
   of_another_list.fault = *find_fault("exception_lost:14");
   std::ofstream(file_of(directory.path(), 9)) << text_of(of_another_list);
   CHECK_THROWS_WITH_AS(
       load_all(directory.path()),
-      doctest::Contains("case-00009.json: This is the result of `exception_lost:14 wall 2`, which is no case"),
+      doctest::Contains(
+          "case-00009.json: This file is the result of `exception_lost:14 wall 2`, which is not the case"),
       device::Error);
   of_another_list = result;
   of_another_list.number = static_cast<unsigned>(all_cases().size()) + 1;
   std::ofstream(file_of(directory.path(), 9)) << text_of(of_another_list);
-  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("no case of that number"), device::Error);
+  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("not the case with this number"), device::Error);
   CHECK_THROWS_AS(load_all(directory / "nowhere"), device::Error);
   CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
 }
@@ -194,8 +195,8 @@ TEST_CASE("a file contains names, and names that this version does not know are 
   }
   CHECK(parse_result(text) == result);
   for (const auto& [known, unknown, complaint] :
-       {std::tuple{"motor_open:1", "motor_open\\u001B[2J:1", "the fault `motor_open?[2J:1`, which is in no case"},
-        {"\"wall\"", "\"floor\"", "the situation `floor`, which is in no case"},
+       {std::tuple{"motor_open:1", "motor_open\\u001B[2J:1", "the fault `motor_open?[2J:1`, which this version does not"},
+        {"\"wall\"", "\"floor\"", "the situation `floor`, which this version does not"},
         {"\"current_jump\"", "\"current_leap\"", "the firmware has no fault `current_leap`"},
         {"\"restart\"", "\"nap\"", "the firmware has no fault `nap`"},
         {"\"force on again\"", "\"coffee\"", "there is no recovery `coffee`"}}) {
