@@ -98,6 +98,8 @@ void FrameLoop::lay_out(Frame& frame) {
   canvas.add(content_.canvas_digest());
   canvas.add(frame.smooth);
   frame.picture = {.window = {0, 0, imgui_.size().x, imgui_.size().y},
+                   .width_pixels = frame.size.width,
+                   .height_pixels = frame.size.height,
                    .ground = packed(content_.ground()),
                    .canvas = content_.canvas(),
                    .canvas_digest = canvas.value(),

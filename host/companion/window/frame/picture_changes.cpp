@@ -48,7 +48,8 @@ Box enclosing(const Box& a, const Box& b) {
 }
 
 std::vector<Box> changes_between(const DrawnPicture& before, const DrawnPicture& now) {
-  if (before.window != now.window || before.ground != now.ground || before.canvas != now.canvas ||
+  if (before.window != now.window || before.width_pixels != now.width_pixels ||
+      before.height_pixels != now.height_pixels || before.ground != now.ground || before.canvas != now.canvas ||
       !are_same_panes(before, now))
     return {now.window};
   std::vector<Box> boxes;

@@ -35,6 +35,8 @@ struct DrawnPane {
 
 struct DrawnPicture {
   Box window;
+  int width_pixels = 0;  ///< of the framebuffer; the window system can resize the window during a frame
+  int height_pixels = 0;
   std::uint64_t ground = 0;  ///< background color
   Box canvas;                ///< area of the scene, which is always painted completely
   std::uint64_t canvas_digest = 0;

@@ -40,6 +40,16 @@ TEST_CASE("a part that has changed is drawn, and neither its pane nor the canvas
   CHECK(changes[0].area() < 1.05f * plot.area());
 }
 
+TEST_CASE("a window whose framebuffer had another size is drawn completely, even if its layout is the same") {
+  DrawnPicture wider = picture(), higher = picture();
+  wider.width_pixels = 1200;
+  higher.height_pixels = 700;
+  for (const DrawnPicture& now : {wider, higher}) {
+    CHECK(now != picture());
+    CHECK(changes_between(picture(), now) == std::vector<Box>{window});
+  }
+}
+
 TEST_CASE("where something was that has moved or gone is drawn as well") {
   DrawnPicture now = picture();
   const Box moved{720, 340, 980, 360};
