@@ -65,7 +65,7 @@ void BoardRun::let_go_of_device() {
 void BoardRun::drop_device() {
   if (device_) device_->abandon();
   let_go_of_device();
-  // Board time is stopped during this wait, so a late reaction of the board's program has no effect.
+  // Board time is stopped, so the duration of this wait does not affect the result.
   constexpr int tries = 5000;
   for (int i = 0; i < tries && control_.status().all.at("usb").at("imported").get<bool>(); ++i)
     std::this_thread::sleep_for(1ms);

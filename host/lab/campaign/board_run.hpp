@@ -1,4 +1,4 @@
-// A separate virtual board with an arm, a hand and a host that tolerates disconnections of the device.
+// Runs a virtual board with an arm, a hand and a host for one case.
 #pragma once
 
 #include <functional>
@@ -19,21 +19,21 @@ class BoardRun {
   /// Board time is initially stopped. Throws device::Error if the board does not start.
   explicit BoardRun(const device::VirtualBoardOptions& options);
 
-  /// Waits for the device and opens it; false if it does not appear within the limit.
+  /// Waits for the device and opens it. Returns false if the device does not appear within the limit.
   bool connect(double limit_s);
-  /// Like connect(), for a restarted board. Also waits until the board can report the cause of the restart.
+  /// Connects to a restarted board and waits until the board can report the cause of the restart.
   bool connect_after_restart();
   bool connected() const { return device_ != nullptr; }
   device::Device& device() { return *device_; }
   void set(std::initializer_list<device::ParameterChange> changes);
-  /// Closes the device abruptly, like a killed program, and waits until the board's USB detects the disconnection.
+  /// Closes the device and waits until the board detects the disconnection.
   void drop_device();
-  /// Sets a function that is called with every pose from now on.
+  /// Registers a callback for each pose.
   void watch_poses(std::function<void(const device::Pose&)> watch) { watch_ = std::move(watch); }
 
-  /// Lets board time pass, with or without heartbeats, and reads every pose. Closes a device that has disconnected.
+  /// Advances board time and reads every pose. Closes the device after a disconnection.
   void run(double time_s, bool sends_heartbeats = true);
-  /// Lets exactly this time pass, without reading poses.
+  /// Advances board time by exactly `time_s` and reads no poses.
   void run_exactly(double time_s) { pass(time_s); }
   /// Returns false if the condition does not become true in time.
   bool wait_for(const std::function<bool(const device::Pose&)>& condition, double limit_s);
@@ -50,7 +50,7 @@ class BoardRun {
   void reset();
   void request_boot_loader();
   bool is_in_boot_loader() const;
-  /// Commands the boot loader to start the firmware; false on failure.
+  /// Commands the boot loader to start the firmware. Returns false on failure.
   bool start_from_boot_loader();
   device::ControlClient& control() { return control_; }
   device::Vector3 true_position_m();

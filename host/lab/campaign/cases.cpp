@@ -16,7 +16,7 @@ namespace {
 using protocol::InjectedFault;
 using protocol::InjectionPlace;
 
-/// Whether the wire is tested. Of three equivalent wires only the second is tested.
+/// The campaign tests only the second of three equivalent wires.
 bool is_tried(std::string_view wire) {
   if (wire.find("[0]") != std::string_view::npos || wire.find("[2]") != std::string_view::npos) return false;
   return wire_of(wire) != Wire::other;
@@ -26,13 +26,12 @@ constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", 
                                                  "motor_current[1]+motor_current[2]"};
 constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
                                                   "bridge_fault_tim8", "inkwell_switch"};
-/// The firmware handles these exceptions: PendSV, the supply detector and the control interrupt of the converters.
-/// Crash handlers are not included. USB is polled in the main loop.
+/// The firmware handles these exceptions. The main loop polls USB.
 constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
                                    virtual_board::exception_of(virtual_board::voltage_detector_position),
                                    virtual_board::exception_of(virtual_board::converters_position)};
 
-/// These amounts are tested in addition to the amounts in the table and in case_faults().
+/// Additional amounts for injected faults.
 constexpr struct {
   InjectedFault fault;
   double amount;
@@ -165,8 +164,7 @@ CaseFault at_another(CaseFault fault, unsigned number) {
   const auto place = protocol::info(*fault.fault).place;
   if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
   if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
-  // A listed wire has the index [1], and a listed pair of adjacent wires also has the index [2]. All indices are
-  // shifted cyclically.
+  // A name of two adjacent wires contains the indices [1] and [2]. Each index changes cyclically.
   for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
     char& index = fault.of[at + 1];
     index = static_cast<char>('0' + (static_cast<unsigned>(index - '0') + number + 1) % 3);
@@ -183,8 +181,8 @@ std::vector<Case> all_cases() {
     for (const CaseSituation situation : situations) {
       for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
       if (!is_of_three(fault)) continue;
-      // Motor 1 uses the earliest instant, because its pulses come first in the self-test. The instant before power-on
-      // is not used.
+      // In the self-test, the pulses of motor 1 come first, so motor 1 uses the earliest instant. The instant before
+      // power-on is not used.
       for (const unsigned other : {1u, 3u}) {
         const unsigned phase = other == 1 ? 3 : 2;
         cases.push_back({++number, at_another(fault, other), situation, phase});
@@ -195,7 +193,6 @@ std::vector<Case> all_cases() {
 
 namespace {
 
-/// A fault of a case, and its listed fault.
 struct NamedFault {
   CaseFault fault, listed;
 };

@@ -1,4 +1,4 @@
-// The fault campaign as a list of cases: every fault in every situation of the arm, at random instants.
+// The cases of the fault campaign.
 #pragma once
 
 #include <compare>
@@ -35,7 +35,7 @@ std::string_view name_of(CaseSituation situation);
 std::optional<CaseSituation> find_situation(std::string_view name);
 /// Description in one sentence with figures.
 std::string meaning_of(CaseSituation situation);
-/// Whether the hand feels a force. Self-test pulses do not count.
+/// Returns true if the host has switched the force on.
 constexpr bool is_active(CaseSituation situation) {
   return situation >= CaseSituation::rest && situation <= CaseSituation::landing;
 }
@@ -43,10 +43,10 @@ constexpr bool is_pressed(CaseSituation situation) {
   return is_active(situation) && situation != CaseSituation::rest && situation != CaseSituation::motion;
 }
 
-/// Swing of `motion`: amplitude along all axes, and time from one side to the other.
+/// In `motion` the hand swings by `swing_m` along each axis, and half a swing lasts `swing_s`.
 inline constexpr double swing_m = 0.03, swing_s = 0.10;
 
-/// Fling of `fast_hand`: distance along x, and its duration.
+/// In `fast_hand` the hand moves by `fling_m` along x within `fling_s`.
 inline constexpr double fling_m = 0.14, fling_s = 0.085;
 
 /// Number of instants. The first instant of `starting` is before power-on.
@@ -82,19 +82,19 @@ struct Case {
   std::string name() const;
 };
 
-/// Returns the control case, then the faults, then the other events. Faults of three equivalent parts are listed for
-/// motor 2, which carries the load at the wall.
+/// Returns the control case, then the faults, then the other events. If the arm has three equivalent parts, the list
+/// contains the part of motor 2, because motor 2 carries the load at the wall.
 std::vector<CaseFault> case_faults();
-/// Returns the same fault at another part of the same kind. The arm has three (1 to 3) of each kind: motor, leg,
-/// encoder, current sensor, or gimbal potentiometer. Faults of single parts are returned unchanged.
+/// Returns the same fault at part `number` (1 to 3): motor, leg, encoder, current sensor or gimbal potentiometer. If
+/// the arm has only one part of the kind, returns the fault unchanged.
 CaseFault at_another(CaseFault fault, unsigned number);
 bool is_of_three(const CaseFault& fault);
-/// Lists each fault in each situation at each instant. The faults of the first and third equivalent parts follow, at
-/// one instant each.
+/// Returns a case for each fault, situation and instant. The first and third of three equivalent parts have only one
+/// instant.
 std::vector<Case> all_cases();
-/// Maps a fault at any equivalent part to the fault in case_faults(). Other faults are returned unchanged.
+/// If `fault` affects one of three equivalent parts, returns the fault at the part in case_faults().
 CaseFault listed_fault(const CaseFault& fault);
-/// Returns the fault with this name; std::nullopt if no case has this fault.
+/// Returns std::nullopt if no case has a fault with this name.
 std::optional<CaseFault> find_fault(std::string_view name);
 
 }  // namespace inkwell::campaign

@@ -34,8 +34,8 @@ constexpr Expected known_cases[] = {
     {"wires_shorted:motor_current[1]+motor_current[2] wall 2", Fault::current_jump, Fault::current_jump, quick_periods, false},
     {"adc_stopped:2 wall 1", Fault::samples_stale, Fault::samples_stale, quick_periods, true},
     {"adc_stopped:3 motion 2", Fault::samples_stale, Fault::samples_stale, quick_periods, false},
-    // A motor that does not follow its voltage. The limit is large where the current drifts from a frozen reading that
-    // was correct at first.
+    // In these cases a motor does not follow its voltage. A frozen current reading is detected late, because the
+    // current deviates slowly from the reading.
     {"wires_shorted:bridges[1].leg_a+bridges[1].leg_b wall 2", Fault::motor_implausible, Fault::current_jump, 40, true},
     {"shunt_frozen:2 wall 3", Fault::motor_implausible, Fault::current_jump, 4000, true},
     {"motor_shorted:2 wall 1", Fault::motor_implausible, Fault::current_jump, 2000, true}};

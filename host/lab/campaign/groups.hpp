@@ -11,7 +11,6 @@
 
 namespace inkwell::campaign {
 
-/// The results are grouped by listed fault and situation.
 using Groups = std::map<std::pair<CaseFault, CaseSituation>, std::vector<Result>>;
 
 inline Groups group(std::span<const Result> results) {
@@ -25,7 +24,7 @@ inline const std::vector<Result>* find(const Groups& groups, const CaseFault& fa
   return found == groups.end() ? nullptr : &found->second;
 }
 
-/// The fault-free case with the same situation and phase; null if it was not run.
+/// Returns the fault-free case of this situation and phase, or null if the case was not run.
 inline const Result* fault_free(const Groups& groups, CaseSituation situation, unsigned phase) {
   if (const auto* results = find(groups, CaseFault{}, situation))
     for (const Result& result : *results)
@@ -33,9 +32,8 @@ inline const Result* fault_free(const Groups& groups, CaseSituation situation, u
   return nullptr;
 }
 
-/// Whether the hand flings the arm, without an injected fault.
 inline bool is_flung(const Result& result) { return result.fault.deed == Deed::fast_hand; }
-/// Whether the bridges were driven only by self-test pulses, which do not count as force.
+/// Returns true if self-test pulses drive the bridges in this situation.
 inline bool is_testing(const Result& result) {
   return result.situation == CaseSituation::testing || result.situation == CaseSituation::starting;
 }

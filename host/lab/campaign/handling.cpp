@@ -98,8 +98,7 @@ bool bridges_drive(const nlohmann::json& truth) {
 bool regains_force(BoardRun& board) {
   board.run(0.02);
   if (board.is(State::fault)) {
-    // Repeats the command until the cause is gone, as a user would. For example, the supply voltage needs 0.1 s to
-    // fall.
+    // The board refuses the command until the cause is gone, so the command is repeated.
     const auto is_cleared = [](const auto& pose) { return pose.state != State::fault; };
     for (int times = 0; times < 5 && board.is(State::fault); ++times) {
       board.command(Command::clear_fault);

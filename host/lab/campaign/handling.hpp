@@ -1,4 +1,4 @@
-// Actions of the user: gripping the stylus, pressing it into a wall, switching the force on.
+// Actions of the simulated user.
 #pragma once
 
 #include <vector>
@@ -13,24 +13,23 @@ namespace inkwell::campaign {
 inline constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
 
 device::Vector3 middle_of_box_m(const protocol::ParameterSet& parameters);
-/// Target of the hand inside the wall, so that hand and wall in series exert this force.
+/// Returns the hand target inside the wall for this contact force.
 device::Vector3 into_wall_m(const protocol::ParameterSet& parameters, experiment::BoxWall wall, double force_N);
-/// Target inside the forward wall for this fraction of the force limit.
+/// Returns the hand target inside the forward wall for this fraction of the force limit.
 device::Vector3 beyond_forward_wall_m(const protocol::ParameterSet& parameters, double part_of_limit);
-/// Returns a path that swings back and forth around this point, as in CaseSituation::motion.
+/// Returns the hand path of CaseSituation::motion around this point.
 std::vector<device::HandWaypoint> swings(const device::Vector3& middle_m, int count);
-/// Returns a path to the middle, then `use_presses` presses into the forward and the side wall, and then `use_swings`
-/// swings (campaign/run.hpp).
+/// Returns the hand path for continued use (campaign/run.hpp).
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters);
-/// Returns a path back along x and then past this point to the other side, faster than the speed limit.
+/// Returns a hand path along x, faster than the speed limit.
 std::vector<device::HandWaypoint> fling(const device::Vector3& middle_m);
-/// Grips the stylus at its position or in the inkwell, and moves it to the target.
+/// Grips the stylus and moves it to the target.
 void take_by_hand(BoardRun& board, device::Vector3 target_m, double duration_s);
 
-/// True if the control socket's `truth` shows that a leg was driven high a moment ago.
+/// Returns true if a bridge was driven a moment ago, according to `truth` of the control socket.
 bool bridges_drive(const nlohmann::json& truth);
-/// Clears the fault and switches the force on, after a move to the inkwell if the arm is unreferenced. Returns false if
-/// the force stays off or there is no device. Throws device::Error if the device disconnects meanwhile.
+/// Clears the fault, references the arm if necessary, and switches the force on. Returns false if the force stays off
+/// or no device is connected. Throws device::Error if the device disconnects during the call.
 bool regains_force(BoardRun& board);
 
 }  // namespace inkwell::campaign

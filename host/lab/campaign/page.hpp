@@ -1,4 +1,4 @@
-// The results as pages: a summary, the effect of each fault in each situation, and all undetected faults.
+// Writes the results as Markdown pages.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace inkwell::campaign {
 
-/// Worst values of all cases of one fault in one situation.
+/// Worst values of a fault in a situation.
 struct Summary {
   unsigned cases = 0;       ///< number of completed cases
   unsigned detected = 0;    ///< a fault was reported, or the board restarted; switching the bridges off alone does not
@@ -23,10 +23,10 @@ struct Summary {
 };
 Summary summarise(std::span<const Result> results);
 
-/// Folder of the detail pages and plots: the path of the page without its extension. Throws device::Error if the page
-/// has no extension.
+/// Returns the folder for detail pages and plots, which is the path of the page without its extension. Throws
+/// device::Error if the page has no extension.
 std::filesystem::path folder_of_details(const std::filesystem::path& page);
-/// Writes the summary page, and the detail pages and plots to their folder. Throws device::Error.
+/// Writes the summary page, the detail pages and the plots. Throws device::Error.
 void write_page(std::span<const Result> results, const std::filesystem::path& page);
 
 }  // namespace inkwell::campaign

@@ -1,4 +1,4 @@
-// Sections about reports: a second fault, the boot loader, and faults that no case reported.
+// Sections of the page about fault reports.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace inkwell::campaign {
 
-/// State of the earlier fault. Findings: cases that lost the report of the earlier fault.
+/// The findings are the cases that lost the report of the earlier fault.
 Section after_another(std::span<const Result> results);
-/// Findings: cases that did not reach the boot loader.
+/// The findings are the cases that did not reach the boot loader.
 Section missed_boot_loader(std::span<const Result> results);
-/// Findings: monitored faults that were reported in none of these cases.
+/// The findings are the monitored faults that no case reported.
 Section never_reported(std::span<const Result> results);
 
 }  // namespace inkwell::campaign

@@ -1,4 +1,4 @@
-// Sections about the hand: force, energy, and bridges that switched on unexpectedly.
+// Sections of the page about force and energy at the hand.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace inkwell::campaign {
 /// Noise may raise the measured force to this multiple of the force limit.
 inline constexpr double tolerated_part_of_limit = 1.05;
 
-/// Worst values of all cases with the force on. The extra energy is listed only where a fault-free run exists for
+/// Worst values of all cases with the force on. The extra energy is listed only if a fault-free case exists for
 /// comparison.
 class AtTheHand {
  public:
@@ -35,11 +35,11 @@ class AtTheHand {
   std::vector<std::string_view> not_compared_;  ///< situations
 };
 
-/// Findings: rows above the limit.
+/// The findings are the rows above the limit.
 Section above_limit(const Groups& groups, const std::vector<CaseFault>& faults);
-/// Findings: cases in which bridges switched on, although they were off at the injection.
+/// The findings are the cases in which bridges switched on after the injection.
 Section switched_on(std::span<const Result> results);
-/// Force on the hand that flings the arm, with the force on and off.
+/// Describes the force on the hand during a fling.
 std::string fast_hand(std::span<const Result> results);
 
 }  // namespace inkwell::campaign

@@ -12,8 +12,7 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Whether the force was on, without self-test pulses. Cases of a flung arm are excluded, because the hand feels the
-/// arm's inertia there.
+/// Cases with a flung arm are excluded, because the arm's inertia acts on the hand.
 bool was_driven(const Result& result) {
   return result.error.empty() && result.bridges_were_on && !is_testing(result) && !is_flung(result);
 }
@@ -24,7 +23,7 @@ bool is_of_wires(const CaseFault& fault) {
   return place == protocol::InjectionPlace::wire || place == protocol::InjectionPlace::wires;
 }
 
-/// Largest forces on the hand without a fault, by situation.
+/// Returns the largest fault-free force on the hand in each situation.
 std::map<CaseSituation, double> fault_free_forces_N(std::span<const Result> results) {
   std::map<CaseSituation, double> forces_N;
   for (const Result& result : results)
@@ -33,7 +32,6 @@ std::map<CaseSituation, double> fault_free_forces_N(std::span<const Result> resu
   return forces_N;
 }
 
-/// Returns a class width at which all classes fit next to each other.
 double class_width_N(double reach_N) {
   constexpr double widths_N[] = {0.5, 1, 2, 5, 10, 20};
   constexpr double most = 10;

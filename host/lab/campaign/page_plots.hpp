@@ -1,4 +1,4 @@
-// Plots of the page: times until the bridges are off, and forces on the hand.
+// Plots of the campaign page.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace inkwell::campaign {
 /// Time unit of tables and plots.
 inline constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
 
-/// Force limit of the cases; 0 if no case could be run.
+/// Returns the force limit of the cases, or 0 if no case could be run.
 double force_limit_N(std::span<const Result> results);
 
 std::string off_plot(std::span<const Result> results);

@@ -1,4 +1,4 @@
-// The worst values of each fault, with one table for each situation.
+// Writes a table of the worst values for each situation.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace inkwell::campaign {
 
-/// Time in control periods until the bridges were off, or the state of the bridges.
+/// Returns the time until the bridges were off, or the state of the bridges.
 std::string off_text(const Summary& summary);
 /// Definitions of the columns.
 std::string columns();

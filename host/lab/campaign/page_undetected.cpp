@@ -17,10 +17,10 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Counts the cases with continued use, and the detections during that use.
+/// Counts the detections during continued use.
 class InUse {
  public:
-  /// `healthy`: the fault-free case with the same start, or null.
+  /// `healthy` is the fault-free case with the same start, or null.
   void see(const Result& result, const Result* healthy) {
     if (!result.error.empty()) return;
     if (!result.peak_force_in_use_N) {
@@ -53,7 +53,7 @@ class InUse {
   }
 
  private:
-  /// Compares only cases with complete use, because the use in all other cases was shorter.
+  /// Ignores cases in which the use stopped early.
   void compare(const Result& result, const Result* healthy) {
     if (healthy == nullptr || healthy->noticed_in_use_s || !result.energy_in_use_J || !healthy->energy_in_use_J) return;
     const double more_J = *result.energy_in_use_J - *healthy->energy_in_use_J;
@@ -74,9 +74,8 @@ InUse healthy_in_use(const Groups& groups) {
   return healthy;
 }
 
-/// Returns the name of the situation if a completed case satisfies `counts`, and otherwise an empty text. Adds the
-/// number of these cases unless all cases satisfy `counts`. Adds the affected parts unless all equivalent parts are
-/// affected.
+/// Returns the situation with the number of cases and the affected parts. Returns an empty text if no completed case
+/// satisfies `counts`.
 std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSituation situation,
                            bool (*counts)(CaseSituation, const Result&)) {
   const auto* results = find(groups, fault, situation);
@@ -201,7 +200,7 @@ Section off_without_report(const Groups& groups, const std::vector<CaseFault>& f
 }
 
 Section undetected_without_force(const Groups& groups, const std::vector<CaseFault>& faults) {
-  // The faults are grouped by reason, because many faults share few reasons.
+  // Each row contains all faults with the same reason.
   struct Row {
     std::string_view reason;
     std::string where;

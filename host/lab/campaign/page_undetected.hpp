@@ -13,9 +13,9 @@ struct Undetected {
   std::size_t also_in_use = 0;  ///< faults that continued use did not reveal either
 };
 
-/// Undetected faults with the force on, after which the bridges stayed on.
+/// Lists the undetected faults after which the bridges stayed on.
 Undetected undetected_with_force(const Groups& groups, const std::vector<CaseFault>& faults);
-/// Undetected faults with the force on, after which the bridges switched off. Findings: faults.
+/// Lists the undetected faults after which the bridges switched off. Findings: faults.
 Section off_without_report(const Groups& groups, const std::vector<CaseFault>& faults);
 /// Findings: faults.
 Section undetected_without_force(const Groups& groups, const std::vector<CaseFault>& faults);

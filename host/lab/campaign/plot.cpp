@@ -32,8 +32,7 @@ std::string line(int x1, int y1, int x2, int y2, std::string_view more) {
   return fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n", x1, y1, x2, y2, more);
 }
 
-/// Positions of the bars. Bars of numeric classes nearly touch. If the last bar is not a numeric class, a gap precedes
-/// this bar.
+/// Positions of the bars. Bars of numeric classes nearly touch. If `last_apart` is set, a gap precedes the last bar.
 class Layout {
  public:
   explicit Layout(const Histogram& histogram) : histogram_(histogram), gap_(histogram.edges.empty() ? 8 : 2) {}
@@ -44,7 +43,7 @@ class Layout {
   }
   int middle_of(std::size_t bar) const { return left_of(bar) + bar_width / 2; }
   int end() const { return left_of(histogram_.bars.size() - 1) + bar_width + gap_; }
-  /// Right edge of the numeric classes, without the separate bar.
+  /// Right edge of the numeric classes.
   int axis_end() const {
     return histogram_.last_apart ? left_of(histogram_.bars.size() - 2) + bar_width + gap_ : end();
   }
@@ -59,7 +58,7 @@ class Layout {
 /// Letter widths of a wide sans-serif font.
 constexpr std::size_t title_letter = 8, letter = 7;
 
-/// The number is above its bar, or next to the limit line if number and line would overlap.
+/// Places the number above the bar, or next to the limit line to avoid an overlap.
 std::string number_of(const Histogram& histogram, const Layout& layout, std::size_t bar, int y) {
   const std::string digits = std::to_string(histogram.bars[bar].count);
   const int half_width = static_cast<int>(letter * digits.size()) / 2 + 4;
@@ -72,7 +71,7 @@ std::string number_of(const Histogram& histogram, const Layout& layout, std::siz
 std::string bars_of(const Histogram& histogram, const Layout& layout) {
   unsigned highest = 1;
   for (const Bar& bar : histogram.bars) highest = std::max(highest, bar.count);
-  // Every nonzero bar is visible, even next to a much higher bar.
+  // Every nonzero bar has a visible height.
   const auto tall = [&](unsigned count) {
     return count == 0 ? 0 : std::max(1, static_cast<int>(static_cast<unsigned>(height) * count / highest));
   };
@@ -103,7 +102,7 @@ std::string axis_of(const Histogram& histogram, const Layout& layout) {
 
 constexpr int key_indent = 18, key_line = 18;
 
-/// Right edge of the texts, which may be wider than a plot with few bars.
+/// Right edge of the title and the legend.
 int end_of_texts(const Histogram& histogram) {
   const std::size_t longest = std::max(histogram.strong_means.size(), histogram.quiet_means.size());
   return left + static_cast<int>(std::max(title_letter * histogram.title.size(), key_indent + letter * longest));

@@ -15,7 +15,7 @@ using protocol::InjectedFault;
 
 namespace {
 
-/// Reason why a fault of a wire may stay undetected, by the function of the wire.
+/// Returns the reason why a wire fault may stay undetected.
 std::string_view reason_of_wire(Wire wire) {
   switch (wire) {
     case Wire::encoder:
@@ -112,7 +112,7 @@ constexpr std::optional<std::string_view> reason_in(const std::array<Reason, cou
   return std::nullopt;
 }
 
-/// Reasons with the force on that depend only on the fault.
+/// Reasons for faults with the force on.
 constexpr auto reasons_with_force = std::to_array<Reason>({
     {InjectedFault::wires_shorted, "The two wires had the same level, or no check compares them."},
     {InjectedFault::wire_spikes, "The input filters and repeated reads tolerate the spikes."},
@@ -183,7 +183,7 @@ constexpr bool every_fault_has_a_reason() {
 }
 static_assert(every_fault_has_a_reason(), "reasons_with_force: each fault whose place does not matter needs a row");
 
-/// Reasons with the force off that depend only on the fault, for faults with another reason than with the force on.
+/// These reasons replace `reasons_with_force` while the force is off.
 constexpr auto reasons_without_force = std::to_array<Reason>({
     {InjectedFault::wires_shorted,
      "The two wires have the same level while the bridges are off and the hand keeps the joint stationary."},
@@ -210,7 +210,7 @@ constexpr auto reasons_without_force = std::to_array<Reason>({
      "nothing had moved."},
 });
 
-/// Whether the self-test's pulses detect the fault. A fault that occurs after the pulses can stay undetected.
+/// Returns true if the self-test pulses detect the fault. A fault after the pulses can stay undetected.
 bool is_tested_by_pulses(const CaseFault& put_in) {
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
@@ -229,7 +229,7 @@ bool is_tested_by_pulses(const CaseFault& put_in) {
   }
 }
 
-/// Reason why a fault of a wire may stay undetected while the bridges are off.
+/// Returns the reason why a wire fault may stay undetected while the bridges are off.
 std::string_view reason_of_idle_wire(InjectedFault fault, Wire wire) {
   switch (wire) {
     case Wire::encoder:

@@ -1,4 +1,4 @@
-// Reasons why a fault or a fast hand may stay undetected, for the rows of the tables.
+// Reasons why a fault or a fast hand may stay undetected.
 #pragma once
 
 #include <string_view>
@@ -7,12 +7,12 @@
 
 namespace inkwell::campaign {
 
-/// Reason for a case in which the force was on and the bridges stayed on. No function of this file is called for the
-/// control case.
+/// Returns the reason why the board did not switch the bridges off. The functions accept any fault except the control
+/// case.
 std::string_view reason_with_force(const CaseFault& put_in);
-/// Reason for a situation with the force off.
+/// Returns the reason for an undetected fault with the force off.
 std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation);
-/// Reason for a case in which the force was on and the bridges switched off.
+/// Returns the reason why the board switched the bridges off without a report.
 std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situation);
 
 }  // namespace inkwell::campaign

@@ -18,7 +18,7 @@
 #include "host/client/device/plain_json.hpp"
 #include "host/client/recording/write_text.hpp"
 
-/// A number, or null for std::nullopt.
+/// Writes null for std::nullopt.
 template <>
 struct nlohmann::adl_serializer<std::optional<double>> {
   static void to_json(json& out, const std::optional<double>& value) { out = value ? json(*value) : json(); }
@@ -27,7 +27,7 @@ struct nlohmann::adl_serializer<std::optional<double>> {
   }
 };
 
-/// The name, or an empty string for Fault::none.
+/// Writes an empty string for Fault::none.
 template <>
 struct nlohmann::adl_serializer<inkwell::protocol::Fault> {
   static void to_json(json& out, inkwell::protocol::Fault fault) { out = inkwell::campaign::name_of_reported(fault); }
@@ -114,7 +114,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, erro
 
 namespace {
 
-/// The library converts any number to unsigned, which is undefined for values out of range.
+/// Checks the counts, because the conversion of a number out of range is undefined.
 void require_counts(const nlohmann::json& result) {
   for (const char* name : {"number", "phase", "restarts"}) {
     const auto& value = result.at(name);

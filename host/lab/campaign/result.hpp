@@ -1,4 +1,4 @@
-// Result of one case, and its file.
+// Result of one case.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace inkwell::campaign {
 
-/// State of a fault reported before the injection.
+/// State of the earlier fault after the injection.
 enum class FirstFault : std::uint8_t {
   none,       ///< there was no earlier fault, or the board could not be read
   reported,   ///< the fault is still reported
@@ -30,7 +30,7 @@ enum class Recovery : std::uint8_t {
   board_reset,
   not_recovered,
 };
-/// Returns the wording of files and pages; empty for Recovery::unknown.
+/// Returns the name in files and pages, or an empty text for Recovery::unknown.
 std::string_view name_of(Recovery recovery);
 
 /// Detection during continued use of the arm.
@@ -41,10 +41,10 @@ struct NoticedInUse {
 
   bool operator==(const NoticedInUse&) const = default;
 };
-/// Returns the name of the fault, `restart` or `force off`; empty if nothing was noticed.
+/// Returns the fault name, `restart`, `force off` or an empty text.
 std::string_view name_of(const NoticedInUse& noticed);
 
-/// Returns the name of a reported fault; empty for Fault::none.
+/// Returns the fault name, or an empty text for Fault::none.
 std::string_view name_of_reported(protocol::Fault fault);
 
 struct Result {
@@ -83,23 +83,23 @@ struct Result {
   bool operator==(const Result&) const = default;
 };
 
-/// A fault was reported, or the board restarted. A lock-up is an effect of the fault and not a detection.
+/// Returns true if a fault was reported or the board restarted. A lock-up is not a detection.
 bool is_detected(const Result& result);
-/// The fault was not detected, and the bridges did not switch off.
+/// Returns true if the fault was not detected and the bridges did not switch off.
 bool is_unnoticed(const Result& result);
 
-/// Reported faults, restarts and a lock-up; empty if none.
+/// Returns the reported faults, the restarts and the lock-up, or an empty text.
 std::string fault_text(const Result& result);
 
-/// A JSON object with a member for each field, and a line feed. Faults, situations and actions have names.
+/// Returns a JSON object and a line feed. The text contains the names of faults, situations and actions.
 std::string text_of(const Result& result);
 /// Throws device::Error if the text is not a result.
 Result parse_result(const std::string& text);
 
 std::filesystem::path file_of(const std::filesystem::path& directory, unsigned number);
-/// Writes atomically, so that a killed job leaves no partial result. Throws device::Error.
+/// Writes the file atomically, so that a killed program leaves no partial file. Throws device::Error.
 void save(const Result& result, const std::filesystem::path& directory);
-/// Results by number. An error names a file that is damaged or belongs to another list of cases.
+/// Results by number. Throws device::Error if a file is damaged or belongs to another list of cases.
 std::vector<Result> load_all(const std::filesystem::path& directory);
 
 }  // namespace inkwell::campaign

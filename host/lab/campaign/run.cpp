@@ -45,7 +45,6 @@ bool is_before_power(const Case& the_case) {
   return the_case.situation == CaseSituation::starting && the_case.phase == 1;
 }
 
-/// Sets a parameter to its maximum: the highest stiffness, or the longest time.
 void set_to_maximum(BoardRun& board, ParameterSet& parameters, Parameter parameter) {
   const float maximum = protocol::info(parameter).maximum;
   board.set({{parameter, maximum}});
@@ -75,7 +74,7 @@ void switch_force_on(BoardRun& board, ParameterSet& parameters, CaseSituation si
   if (situation != CaseSituation::ramping) board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
 }
 
-/// True if the board is in the state that the situation requires.
+/// Returns true if the state of the board matches the situation.
 bool is_there(const BoardRun& board, CaseSituation situation) {
   switch (situation) {
     case CaseSituation::ramping: return board.is(State::ramping);
@@ -85,8 +84,7 @@ bool is_there(const BoardRun& board, CaseSituation situation) {
   }
 }
 
-/// Causes the earlier fault: the host becomes silent with the force on. This fault has no cause in the board, so it
-/// cannot be confused with the injected fault.
+/// Causes `first_fault`: the host sends no heartbeats while the force is on.
 void bring_a_first_fault(BoardRun& board) {
   constexpr double silent_s = 0.1, brakes_s = 0.05;  // brakes_s is short because the arm was at rest
   board.run(silent_s, false);
@@ -94,8 +92,7 @@ void bring_a_first_fault(BoardRun& board) {
   board.run(brakes_s);
 }
 
-/// Starts the update. The transition to the boot loader lasts until the board has written its parameters, none of which
-/// were stored before.
+/// Starts the update. Before the boot loader starts, the board writes all parameters, because none were stored.
 void begin_update(BoardRun& board) {
   constexpr double report_delay_s = 0.002;
   board.command(Command::store_parameters);
@@ -104,7 +101,7 @@ void begin_update(BoardRun& board) {
   expect(board.wait_for(State::update, 0.02), "the board did not leave for its boot loader.");
 }
 
-/// The hand holds the stylus before the first instruction is executed. After power-on the watchdog expires once.
+/// The hand grips the stylus before the board starts. After power-on the watchdog expires once.
 void begin_start(BoardRun& board, const Case& the_case) {
   take_by_hand(board, board.true_position_m(), 0.05);
   if (is_before_power(the_case)) return;
@@ -117,7 +114,7 @@ void begin_start(BoardRun& board, const Case& the_case) {
 /// Brings the board into the situation and returns its parameters.
 ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   const CaseSituation situation = the_case.situation;
-  // The stylus leaves the inkwell before the first instruction, so the board has no reference.
+  // The stylus leaves the inkwell before the board starts, so the board has no reference.
   if (situation == CaseSituation::unreferenced) {
     Vector3 away_m = board.true_position_m();
     away_m[2] -= 0.04;
@@ -186,7 +183,7 @@ double longest_phase_of(CaseSituation situation) {
   }
 }
 
-/// Instant of a phase. The instant is the same for each fault, so that the control case is comparable.
+/// Instant of a phase. The instant does not depend on the fault, so results are comparable with the control case.
 double phase_s(const Case& the_case) {
   if (is_before_power(the_case)) return 0;
   const double longest_phase_s = longest_phase_of(the_case.situation);
@@ -204,7 +201,7 @@ void put_in(BoardRun& board, const CaseFault& what, const ParameterSet& paramete
   if (what.of.empty() && !injected.empty()) result.place = injected[0].value("of", "");
 }
 
-/// The watchdog of a starting board expires once, and a board resets itself when it enters its boot loader.
+/// At start-up the watchdog expires once. The board also resets before it enters the boot loader.
 unsigned resets_meant(const BoardRun& board, const Case& the_case) {
   const bool has_left = the_case.situation == CaseSituation::update && board.is_in_boot_loader();
   return is_before_power(the_case) || has_left ? 1 : 0;
@@ -225,7 +222,7 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
   const double driven_until_s = after.at("bridges_driven_until_s");
   const bool drive = bridges_drive(after);
   if (result.bridges_were_on && !drive) result.off_after_s = std::max(0.0, driven_until_s - result.injected_at_s);
-  // The intended self-test pulses of the start-up are over at this point.
+  // The self-test pulses of the start-up are over.
   const bool may_pulse = the_case.situation == CaseSituation::starting;
   result.bridges_went_on = !result.bridges_were_on && (may_pulse ? drive : driven_until_s > result.injected_at_s);
   result.peak_force_N = reading.peak_force_N;
@@ -237,7 +234,7 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
   result.missed_boot_loader = the_case.situation == CaseSituation::update && !board.is_in_boot_loader();
 }
 
-/// An earlier fault does not count.
+/// Records the reported fault unless the situation caused the fault.
 void note_fault(const BoardRun& board, const Result& result, protocol::Fault& fault) {
   if (fault != protocol::Fault::none || !board.is(State::fault)) return;
   if (board.pose()->fault != result.told_before) fault = board.pose()->fault;
@@ -247,14 +244,14 @@ void note_fault(const BoardRun& board, const Result& result, protocol::Fault& fa
 FirstFault outcome_of_first_fault(BoardRun& board, bool restarted) {
   if (board.is(State::fault) && board.pose()->fault == first_fault) return FirstFault::reported;
   try {
-    // Without a restart the fault would still be reported.
+    // A board that has not restarted still reports the fault.
     return restarted && board.device().black_box().fault == first_fault ? FirstFault::black_box : FirstFault::lost;
   } catch (const device::Error&) {
     return FirstFault::none;
   }
 }
 
-/// Records the report after the first fault is cleared, while the cause of the second fault is still present.
+/// Clears the first fault and records the next report.
 void clear_first_fault(BoardRun& board, Result& result) {
   const auto driven_until_s = [&] { return board.control().truth().at("bridges_driven_until_s").get<double>(); };
   const double before_s = driven_until_s();
@@ -264,7 +261,7 @@ void clear_first_fault(BoardRun& board, Result& result) {
   result.bridges_went_on |= driven_until_s() > before_s;
 }
 
-/// Returns true if no error occurred. A device that disconnects meanwhile counts as an error.
+/// Returns true if the force could be switched on.
 bool tries_to_work(BoardRun& board) {
   try {
     if (!board.connected() && !board.connect(0.5)) return false;
@@ -275,7 +272,7 @@ bool tries_to_work(BoardRun& board) {
   }
 }
 
-/// Records the board's reports; false if the board cannot report.
+/// Records the board's reports. Returns false if the board cannot report.
 bool notice(BoardRun& board, const Case& the_case, Result& result) {
   board.run(0.02, false);
   note_fault(board, result, result.detected_as);
@@ -307,8 +304,7 @@ void leave_boot_loader(BoardRun& board, Result& result) {
   }
 }
 
-/// Clears the fault and restores the force. A detection after this point counts only if the device could not report
-/// before.
+/// Clears the fault and restores the force. If `could_report` is true, later detections are ignored.
 void recover(BoardRun& board, const Case& the_case, bool could_report, Result& result) {
   board.control().heal_all();
   if (the_case.situation == CaseSituation::update) leave_boot_loader(board, result);
@@ -344,7 +340,7 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   options.paused = true;
   options.seconds = longest_case_s;
   options.brown_out_level = 3;  // setting of a flashed board
-  // Cases of the same phase have the same seed, unless the seed chooses the address of the fault.
+  // All cases of a phase have the same seed, except cases in which the seed chooses the fault address.
   const auto& fault = the_case.fault.fault;
   const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;
   options.seed = chooses ? the_case.number : the_case.phase;

@@ -1,4 +1,4 @@
-// A part of a page, and its number of findings for the summary.
+// A page section and its number of findings.
 #pragma once
 
 #include <cstddef>

@@ -6,8 +6,8 @@
 
 namespace inkwell::campaign {
 
-/// Continues the situation for a while, presses the arm into the forward and the side wall, then swings it. Stops when
-/// the force switches off. Fills in the members about use, unless the device disconnects without a restart.
+/// Continues the use of the arm (campaign/run.hpp). Stops when the force switches off. Fills in the members of `result`
+/// about continued use.
 void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& result);
 
 }  // namespace inkwell::campaign

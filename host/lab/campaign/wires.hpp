@@ -23,8 +23,8 @@ enum class Wire : std::uint8_t {
   other,  ///< USB data, console, debug probe, status LED, or no wire
 };
 
-/// Returns the function of a wire of the board facts, such as encoders[0].a. For a pair of wires, returns the function
-/// of the first wire.
+/// Returns the function of a wire, for example of `encoders[0].a`. For a pair of wires, returns the function of the
+/// first wire.
 Wire wire_of(std::string_view name);
 
 }  // namespace inkwell::campaign

@@ -18,7 +18,7 @@ using recording::Recording;
 
 constexpr std::size_t samples_per_point = protocol::servo_rate_Hz / 1000;
 
-/// A quantity in the figures: signal, scale, offset, and name in the data.
+/// A quantity in the figures.
 struct Shown {
   Signal signal;
   double scale;
@@ -31,7 +31,7 @@ std::vector<Shown> shown_quantities(const ParameterSet& parameters, BoxWall wall
   const double radius_m = static_cast<double>(parameters[Parameter::sphere_radius_m]);
   const double wall_m = wall_position_m(parameters, wall);
   return {
-      // Point of the sphere closest to the wall; a positive distance is inside the wall.
+      // Depth of the sphere in the wall, negative outside the wall.
       {of_axis(Signal::position_x_m, wall.axis), 1e3 * side, 1e3 * (radius_m - side * wall_m), "distance_mm"},
       {Signal::force_N, 1, 0, "force_N"},
       {Signal::torque_1_Nm, 1, 0, "torque_1_Nm"},
@@ -63,7 +63,7 @@ std::string head(const recording::Information& about, BoxWall wall, int number, 
                                               subtitle, height_pixels));
 }
 
-/// Time range of the figure: the contact with a margin.
+/// Returns the contact with a margin at each end.
 Interval interval_around(Interval contact, double end_s) {
   constexpr double margin_s = 0.25;
   return {std::max(0.0, contact.from_s - margin_s), std::min(end_s, contact.to_s + margin_s)};
@@ -77,8 +77,7 @@ std::string script(const recording::Information& about, const FigureData& data, 
 
   double deepest_mm = 0.5;
   for (const auto& row : data.rows) deepest_mm = std::max(deepest_mm, row.bands.front().maximum);
-  // The free motion spans centimeters and the penetration millimeters. The axis shows the penetration, which the paper
-  // evaluates.
+  // The axis shows only the penetration, because the free motion is ten times larger.
   text += head(about, wall, 11, "Position of the sphere relative to the wall");
   text += fmt::format(
       "set ylabel 'sphere’s surface beyond the wall  /  mm' textcolor rgb ink\n"

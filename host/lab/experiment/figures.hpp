@@ -1,4 +1,4 @@
-// The paper's figures 11 to 14, drawn with gnuplot from a recording.
+// Draws the paper's figures 11 to 14 with gnuplot.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace inkwell::experiment {
 
-/// Mean, smallest and largest value of the figures' quantities in each millisecond.
+/// Returns the mean, smallest and largest value of each quantity in each millisecond.
 recording::FigureData figure_data(const recording::Recording& recording, BoxWall wall);
 
 struct PaperFigureOptions {
@@ -21,10 +21,10 @@ struct PaperFigureOptions {
   std::optional<double> to_s;    ///< std::nullopt: shortly after the contact
 };
 
-/// Writes figure-11.png to figure-14.png into a folder, which is created if it is missing. Also writes figures.gnuplot
-/// and figure-data.csv, from which the figures can be redrawn. Returns the four pictures. Throws device::Error if a
-/// signal was not recorded, the wall was not touched, or the time range contains no samples. Also throws if a file
-/// cannot be written or if gnuplot fails.
+/// Creates the folder and writes figure-11.png to figure-14.png. Writes figures.gnuplot and figure-data.csv, so that
+/// users can redraw the figures. Returns the four pictures. Throws device::Error if a signal was not recorded, the wall
+/// was not touched, or the time range contains no samples. Throws device::Error if a file cannot be written or if
+/// gnuplot fails.
 std::vector<std::string> draw_figures(const recording::Recording& recording, const std::filesystem::path& directory,
                                       const PaperFigureOptions& options);
 

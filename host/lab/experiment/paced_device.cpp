@@ -10,14 +10,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Step of board time, short compared to the host time-out and to the 100 ms of scope data that the link can buffer.
+// Step of board time. The link can buffer 100 ms of scope data.
 constexpr std::chrono::nanoseconds slice = 5ms;
 constexpr double slice_s = std::chrono::duration<double>(slice).count();
 constexpr unsigned slices_per_sign_of_life = 2;
 constexpr auto control_period = std::chrono::nanoseconds(1s) / protocol::servo_rate_Hz;
 constexpr auto slice_poses = static_cast<std::uint64_t>(slice_s * protocol::pose_rate_Hz);
-// A device is considered dead after this number of reads without a pose: 30 s with 10 ms per read. A live board sends
-// ten poses in 10 ms.
+// The device is considered dead after 30 s without a pose.
 constexpr auto read_timeout = 10ms;
 constexpr int silent_reads_limit = 3000;
 constexpr double command_limit_s = 0.5;
@@ -26,8 +25,8 @@ std::chrono::nanoseconds nanoseconds(double time_s) {
   return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(time_s));
 }
 
-/// Tokens count from 1 to 255 and wrap; 0 means no command yet. The device executes commands in order, so a later token
-/// also confirms an earlier command. The newest token in a pose may belong to a later heartbeat.
+/// Tokens count from 1 to 255 and then restart at 1. Token 0 means that no command was executed. The device executes
+/// commands in order, so a later token also confirms an earlier command.
 bool is_at_or_after(std::uint8_t token, std::uint8_t awaited) {
   constexpr int tokens = 255;
   return token != 0 && (token - awaited + tokens) % tokens < tokens / 2;
@@ -59,13 +58,13 @@ void PacedDevice::pass_slice() {
     device_.keep_alive();
     return read_poses(read_timeout);
   }
-  // The interval depends only on board time, so that the board gets the same reports at the same instants in each run.
+  // Heartbeats depend only on board time, so that each run is the same.
   if (slices_++ % slices_per_sign_of_life == 0) device_.send(protocol::Command::heartbeat);
   const std::uint64_t before = poses_received_;
   control_->run(slice_s);
   passed_ += slice;
-  // Board time is stopped now, but reports of the slice may still be in transit. One or two reports belong to frames
-  // that the end of the slice interrupted.
+  // Board time is stopped now, but reports of the slice may still be in transit. Up to two reports arrive in the next
+  // slice.
   const std::uint64_t expected = pose_ ? slice_poses - 2 : 0;
   read_poses(0ms);
   while (poses_received_ - before < expected) read_poses(read_timeout);

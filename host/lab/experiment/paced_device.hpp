@@ -1,5 +1,5 @@
-// A device whose time is controlled by the experiment. The time is board time. A virtual board stops while the host
-// computes, and a real board reports its time with every pose. The load of the host's computer therefore has no effect.
+// Runs a device in board time, so that the load of the host's computer has no effect. A virtual board stops while the
+// host computes.
 #pragma once
 
 #include <chrono>
@@ -18,11 +18,11 @@ class PacedDevice {
   /// `control` is null for a real device.
   PacedDevice(device::Device& device, device::ControlClient* control) : device_(device), control_(control) {}
 
-  /// Lets time pass, reads every pose and sends heartbeats. Throws device::Error with cause and remedy when the device
-  /// reports a fault or becomes silent.
+  /// Waits, reads every pose and sends heartbeats. Throws device::Error if the device reports a fault or becomes
+  /// silent.
   void pass(double time_s);
-  /// Lets time pass until the condition is true. Throws device::Error with `otherwise` if the condition is not true in
-  /// time.
+  /// Waits until the condition is true. Throws device::Error with the text `otherwise` if the condition is false after
+  /// `limit_s`.
   void wait_until(const std::function<bool()>& condition, double limit_s, const std::string& otherwise);
   void wait_for_pose(const std::function<bool(const device::Pose&)>& condition, double limit_s,
                      const std::string& otherwise);

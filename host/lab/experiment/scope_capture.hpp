@@ -12,7 +12,7 @@
 
 namespace inkwell::experiment {
 
-/// Selects signals and reads them on a separate thread during its lifetime.
+/// Reads the selected signals on a separate thread.
 class ScopeCapture {
  public:
   ScopeCapture(PacedDevice& device, const recording::Information& information);

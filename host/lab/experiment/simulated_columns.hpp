@@ -8,11 +8,11 @@
 
 namespace inkwell::experiment {
 
-/// Probe position, motor currents and hand force, as references for the firmware's values.
+/// Returns probe position, motor currents and hand force.
 std::vector<protocol::SimulatedQuantity> recorded_quantities();
 
-/// Adds columns from a virtual board's trace, matched by control period. Throws device::Error if the trace does not
-/// contain a quantity, or does not cover a period of the recording.
+/// Adds columns from a virtual board's trace. Throws device::Error if a quantity or a control period is missing in the
+/// trace.
 void add_simulated_columns(recording::Recording& recording, const device::Trace& trace,
                            const std::vector<protocol::SimulatedQuantity>& quantities);
 

@@ -25,7 +25,7 @@ std::array<const std::vector<float>*, 3> vector_columns(const Recording& recordi
 
 double magnitude(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// Force of spring and damper on one axis; a wall never pulls.
+/// Returns the wall force on one axis. A wall only pushes.
 double axis_force_N(double penetration_m, double velocity_m_s, double stiffness, double damping) {
   if (penetration_m == 0) return 0;
   const double outward = penetration_m > 0 ? 1 : -1;

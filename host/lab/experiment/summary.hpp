@@ -1,4 +1,4 @@
-// Computes the numerical results of the experiment from its recordings, without side effects.
+// Computes the numerical results of the experiment.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct Interval {
   double to_s = 0;
 };
 
-/// Comparison of the logged force with F = k d + c d', computed from the logged penetration and velocity.
+/// Difference between the logged force and F = k d + c d'.
 struct ForceLawError {
   std::size_t samples = 0;  ///< in contact
   double maximum_N = 0;
@@ -28,7 +28,7 @@ struct ForceLawError {
 };
 ForceLawError force_law_error(const recording::Recording& recording, const protocol::ParameterSet& parameters);
 
-/// Residual motion of the arm while the hand holds it against the wall.
+/// Residual motion of the arm during a steady hold.
 struct SteadyHold {
   Interval interval;
   std::array<double, 3> encoder_spread_counts{};  ///< largest minus smallest
@@ -36,11 +36,11 @@ struct SteadyHold {
   double penetration_mean_m = 0;
 };
 SteadyHold steady_hold(const recording::Recording& recording, BoxWall wall, Interval interval);
-/// The half second with the least motion and at least half of the largest penetration. std::nullopt if the contact was
-/// shorter.
+/// Returns the steadiest half second with at least half of the largest penetration. Returns std::nullopt if the contact
+/// was shorter than half a second.
 std::optional<Interval> find_steady_hold(const recording::Recording& recording, BoxWall wall);
 
-/// Interval from the first to the last contact on a wall's axis; std::nullopt without contact.
+/// Returns the interval from the first to the last contact, or std::nullopt without contact.
 std::optional<Interval> contact_with(const recording::Recording& recording, BoxWall wall);
 
 struct WallResult {
@@ -55,7 +55,7 @@ struct WallResult {
   std::optional<SteadyHold> steady_hold;
   std::optional<Interval> contact;
 };
-/// `hold`: interval in which the hand was steady. Without `hold`, find_steady_hold() is used.
+/// If `hold` is std::nullopt, find_steady_hold() provides the interval.
 WallResult evaluate(const recording::Recording& recording, const protocol::ParameterSet& parameters, BoxWall wall,
                     std::optional<Interval> hold);
 

@@ -12,12 +12,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Shortest decimal form of the float: 0.2 instead of 0.20000000298.
+/// Returns 0.2 instead of 0.20000000298.
 double shortest(float value) { return std::stod(fmt::format("{}", value)); }
 
 ordered_json interval_json(const Interval& interval) { return {{"from_s", interval.from_s}, {"to_s", interval.to_s}}; }
 
-/// The worst values of the three motors, and the values of each motor.
+/// Returns the values of each motor and the worst values.
 ordered_json current_step_json(const std::vector<recording::CurrentStep>& steps) {
   recording::CurrentStep worst;
   ordered_json motors = ordered_json::array();

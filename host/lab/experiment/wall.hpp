@@ -1,4 +1,4 @@
-// Walls of the box around the workspace of the sphere.
+// Walls of the box around the workspace.
 #pragma once
 
 #include <string>
@@ -17,9 +17,9 @@ struct BoxWall {
 /// "z+" and the like. Throws device::Error.
 BoxWall parse_wall(const std::string& name);
 std::string wall_name(BoxWall wall);
-/// The wall in the arm's plane, opposite the arm's base. A push into the wall requires no waist torque.
+/// Returns the wall opposite the arm's base. A push into the wall requires no waist torque.
 BoxWall forward_wall(const protocol::ParameterSet& parameters);
-/// A vertical wall perpendicular to the arm's plane; the waist motor supplies its force.
+/// Returns a side wall. The waist motor supplies the wall force.
 BoxWall side_wall(const protocol::ParameterSet& parameters);
 /// Position of the wall along its axis, in meters.
 double wall_position_m(const protocol::ParameterSet& parameters, BoxWall wall);

@@ -29,14 +29,14 @@ using protocol::State;
 using recording::CurrentStep;
 using recording::Recording;
 
-// Simulated hand: a relaxed human hand and arm, damped against oscillation.
+// Stiffness and damping of a relaxed human hand.
 constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
 constexpr double push_N = 2.4, push_part_of_limit = 0.75;  // force of the hand, within the force limit
 constexpr double clear_m = 0.005;                          // distance from the wall before and after the push
 constexpr double touch_m = 0.002;                          // target distance inside the wall at the start of the push
 constexpr double drag_m = 0.015;                           // along the wall, in the arm's plane
 
-// Times in the hand's path, from the start of the recording.
+// Times of the hand path since the start of the recording.
 constexpr double approached_s = 0.7, touched_s = 1.1, pushed_s = 1.9, held_s = 2.6, dragged_s = 3.2, released_s = 3.6,
                  returned_s = 4.1, end_s = 4.2;
 constexpr double settling_s = 0.15;  // from the end of the push's ramp until the hold counts as steady
@@ -46,7 +46,7 @@ constexpr double test_spacing_s = 0.12;
 
 constexpr double user_limit_s = 120, push_limit_s = 30;
 
-/// Probe coordinate at the first contact of the sphere with the wall.
+/// Returns the probe coordinate at the first contact.
 double contact_m(const ParameterSet& parameters, BoxWall wall) {
   return wall_position_m(parameters, wall) - wall.side * static_cast<double>(parameters[Parameter::sphere_radius_m]);
 }
@@ -59,7 +59,7 @@ Vector3 middle_of_box_m(const ParameterSet& parameters) {
   return middle;
 }
 
-/// The vertical axis, or the axis in the arm's plane if the wall is horizontal.
+/// Returns the vertical axis, or a horizontal axis if the wall is horizontal.
 std::size_t drag_axis(const ParameterSet& parameters, BoxWall wall) {
   const std::size_t vertical = parameters[Parameter::frame] == 1.0f ? 1 : 2;
   return static_cast<int>(vertical) != wall.axis ? vertical : static_cast<std::size_t>(forward_wall(parameters).axis);

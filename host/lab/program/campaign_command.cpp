@@ -49,7 +49,7 @@ int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
   return 0;
 }
 
-/// Creates a folder. `option`: command-line option for the folder.
+/// Creates a folder. An error names the command-line `option`.
 void make_folder(const std::filesystem::path& folder, std::string_view option) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
@@ -58,7 +58,7 @@ void make_folder(const std::filesystem::path& folder, std::string_view option) {
                                     folder.string(), code.message(), option));
 }
 
-/// Called before the cases run, so that an invalid folder is reported immediately.
+/// Creates the folder before the cases run, so that an invalid folder is reported immediately.
 void make_folder_of_page(const CampaignOptions& command) {
   make_folder(campaign::folder_of_details(command.page), "--page");
 }
@@ -76,7 +76,7 @@ void print_result(const Case& the_case, const campaign::Result& result) {
   std::fflush(stdout);
 }
 
-/// Runs each case on a separate board, with `jobs` boards in parallel. Returns exit code 1 if a case could not be run.
+/// Runs each case on a separate board. Returns exit code 1 if a case could not be run.
 int run_cases(const DeviceOptions& options, const CampaignOptions& command, const std::vector<Case>& cases) {
   make_folder(command.folder, "--out");
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
@@ -134,7 +134,7 @@ int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
   return exit_code;
 }
 
-/// Returns the results in the order of the cases. Runs `jobs` boards in parallel.
+/// Returns the results in the order of the cases.
 std::vector<campaign::Result> results_of(const DeviceOptions& options, unsigned jobs, const std::vector<Case>& cases) {
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
   std::vector<campaign::Result> results(cases.size());
@@ -149,7 +149,7 @@ std::vector<campaign::Result> results_of(const DeviceOptions& options, unsigned 
   return results;
 }
 
-/// Runs the cases with a known detection, and their fault-free cases. Returns exit code 1 if a result differs.
+/// Runs the expected cases and their fault-free cases. Returns exit code 1 if a result differs from the expectation.
 int check_known(const DeviceOptions& options, const CampaignOptions& command) {
   const auto expected = campaign::expected_cases();
   std::vector<Case> cases;

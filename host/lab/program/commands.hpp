@@ -31,7 +31,7 @@ struct CommandContext {
 INKWELL_LAB_COMMANDS(X)
 #undef X
 
-/// Adds the examples, one per line, and the hints about the options of the program.
+/// Adds the examples and the option hints to the help text.
 void add_lab_examples(CLI::App& command, const std::string& examples);
 
 }  // namespace inkwell::lab

@@ -9,8 +9,8 @@
 
 namespace inkwell::lab {
 
-/// Calls `task(i)` for each i below `count`, on `jobs` threads. Calls no further task after a task has returned false.
-/// A task must not throw, because an exception that leaves a thread terminates the program.
+/// Calls `task(i)` for each i below `count`, on `jobs` threads. Stops after a task has returned false. A task must not
+/// throw, because an exception that leaves a thread terminates the program.
 template <class Task>
 void run_in_parallel(unsigned jobs, std::size_t count, const Task& task) {
   std::atomic<std::size_t> next{0};

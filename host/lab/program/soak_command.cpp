@@ -40,7 +40,7 @@ struct Plan {
   std::vector<unsigned> numbers;  ///< numbers of the sittings
 };
 
-/// All sittings have the same length. The total is the requested time, independent of the number of jobs.
+/// All sittings have the same length. The plan does not depend on the number of jobs.
 Plan plan_of(const SoakOptions& command) {
   if (command.sitting && !command.board_time_s) return {command.choices, {*command.sitting}};
   const double board_time_s = command.board_time_s.value_or(default_board_time_s);
@@ -57,7 +57,7 @@ Plan plan_of(const SoakOptions& command) {
   return plan;
 }
 
-/// Checks before the soak whether the file can be written. Does not change an existing file.
+/// Throws device::Error if the file cannot be written. Does not change an existing file.
 void check_writable(const std::string& file) {
   std::error_code ignored;
   const bool was_there = std::filesystem::exists(file, ignored);
@@ -66,13 +66,12 @@ void check_writable(const std::string& file) {
   if (!was_there) std::filesystem::remove(file, ignored);
 }
 
-/// The completed sittings, and the error of a failed sitting.
 struct Outcome {
   soak::Soak soak;
   std::string trouble;
 };
 
-/// Runs each sitting on a separate board, with `jobs` boards in parallel. Ctrl-C stops running sittings.
+/// Runs each sitting on a separate board. Ctrl-C stops running sittings.
 Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
   const auto [choices, numbers] = plan_of(command);

@@ -1,4 +1,4 @@
-// Adverse events: the host disconnects, the board restarts, or a fault is injected and cleared.
+// Phases with adverse events.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ using protocol::State;
 
 double host_timeout_s(const Bench& bench) { return static_cast<double>(bench.accepted[Parameter::host_timeout_s]); }
 
-/// Brings the hand to a random state: at a point, in motion, or pressed into a wall.
+/// Starts a random use of the arm.
 void be_in_use(Bench& bench, bool with_force) {
   if (with_force)
     bench.make_active();
@@ -34,7 +34,7 @@ void be_in_use(Bench& bench, bool with_force) {
   bench.pass(bench.random.from(0.0, 0.7));
 }
 
-/// A corrupted program may affect any part of the code or its data.
+/// Returns Disturbance::program if the fault may corrupt code or data.
 Disturbance disturbance_by(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::program_astray:
@@ -46,7 +46,7 @@ Disturbance disturbance_by(InjectedFault fault) {
   }
 }
 
-/// Whether the encoder may lose counts. The position is then wrong until the next reference.
+/// Returns true if the fault may cause lost encoder counts.
 bool may_lose_counts(const campaign::CaseFault& put_in) {
   switch (*put_in.fault) {
     case InjectedFault::encoder_stuck:
@@ -60,8 +60,7 @@ bool regains(Bench& bench) {
   try {
     bench.oracle.connected();
     if (!bench.board.connected() && !bench.board.connect(1.0)) return false;
-    // A reported fault or restart withdraws the permission for force. The phase reads fault and restart count before it
-    // requests force again.
+    // The phase checks faults and restarts before it requests force again.
     bench.check_closely();
     bench.pass(0.02);
     bench.oracle.request_force();
@@ -71,7 +70,7 @@ bool regains(Bench& bench) {
   }
 }
 
-/// Whether only a reset clears the fault, according to the table or because the processor is locked up.
+/// Returns true if only a reset clears the fault.
 bool reset_is_the_way(Bench& bench) {
   if (bench.board.is_locked_up()) return true;
   return bench.board.is(State::fault) &&
@@ -173,7 +172,7 @@ std::string be_too_fast(Bench& bench) {
     there_m[axis] += 0.03;
     back_m[axis] -= 0.03;
   }
-  // 0.1 m in 0.1 s: at most 1.9 m/s.
+  // The peak speed is 1.9 m/s.
   bench.board.control().hand_path({{0.3, there_m}, {0.4, back_m}, {0.5, there_m}});
   bench.pass(0.6);
   bench.oracle.require_report_of(protocol::condition(Fault::over_speed));
@@ -202,7 +201,7 @@ std::string put_fault_in(Bench& bench) {
   bench.pass(bench.random.from(0.05, 0.8));
   const auto reported_fault = bench.oracle.last_reported();
   const std::string way = recover(bench, disturbance);
-  // The fault may have caused lost counts. Lost counts may be undetected, or detected during the motion to the inkwell.
+  // Lost counts may be detected later, during the motion to the inkwell.
   if (may_lose_counts(put_in)) bench.oracle.allow_lost_counts();
   bench.withdraw_force();
   bench.dock();

@@ -19,7 +19,7 @@ using protocol::State;
 constexpr double poll_interval_s = 0.005;
 constexpr double close_check_s = 0.1;
 
-/// Returns the number of restarts after the watchdog test, whose reset the board also counts.
+/// The first reset is the watchdog test and not a restart.
 unsigned restarts_of(const nlohmann::json& answer) { return std::max(answer.at("resets").get<unsigned>(), 1u) - 1; }
 
 bool force_on(const device::Pose& pose) { return protocol::force_is_on(pose.state); }
@@ -80,7 +80,7 @@ void Bench::check_closely() {
   if (is_undisturbed() && status.contains("locked_up")) fail(Complaint::no_answer, "the processor is locked up");
 }
 
-/// Compares the newest pose with `truth`, which is slightly newer.
+/// Compares the newest pose with the slightly newer `truth`.
 void Bench::check_pose() {
   if (!board.pose() || !board.pose()->is_referenced) return;
   const auto truth = board.control().truth();
@@ -210,8 +210,8 @@ void Bench::take_out() {
 }
 
 void Bench::dock() {
-  // The arm is referenced again after a rest in the inkwell. Lost counts are reported only in the inkwell, some
-  // milliseconds after the switch has closed.
+  // The arm is referenced again after a rest in the inkwell. The board reports lost counts some milliseconds after the
+  // inkwell switch has closed.
   constexpr double longest_s = 2.3, close_check_interval_s = 0.02, rest_s = 0.3;
   board.control().dock(true);
   double rested_s = 0;
@@ -225,7 +225,7 @@ void Bench::dock() {
       const protocol::Fault reported_fault = board.pose()->fault;
       if (!(lost_counts & protocol::condition(reported_fault)).any()) continue;
       board.command(Command::clear_fault);
-      // The inkwell switch must also open once before this fault is cleared.
+      // This fault is cleared only after the inkwell switch has opened.
       if (reported_fault == protocol::Fault::inkwell_implausible) {
         board.control().dock(false);
         pass(close_check_interval_s);

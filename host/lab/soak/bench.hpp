@@ -1,4 +1,4 @@
-// A virtual board with arm, hand, host and oracle: the environment of the phases.
+// Test environment of the phases.
 #pragma once
 
 #include <functional>
@@ -15,33 +15,33 @@
 
 namespace inkwell::soak {
 
-/// The board has not executed a command, so the phase cannot continue. The finding is already recorded.
+/// The phase cannot continue. The finding is already recorded.
 struct PhaseFailed : device::Error {
   using Error::Error;
 };
 
-/// End of the sitting during a phase. SittingOver is not an error class, so that no handler treats the end as an error
-/// of the board.
+/// Thrown at the end of the sitting. Handlers of device::Error do not catch this type.
 struct SittingOver {};
 
 class Bench {
  public:
   Bench(unsigned number, const Choices& choices, const device::VirtualBoardOptions& board);
 
-  // ---- time, with continuous checks
+  // ---- time
 
-  /// Lets board time pass, with or without heartbeats. Throws SittingOver at the end of the sitting.
+  /// Advances board time. Throws SittingOver at the end of the sitting.
   void pass(double time_s, bool sends_heartbeats = true);
-  /// Checks the true quantities at this instant.
+  /// Checks `truth` of the control socket.
   void check_truth();
   /// Checks for restarts, violated rules, and a lock-up of the processor.
   void check_closely();
-  /// Like check_closely(), and checks that the board answers and stores its accepted parameters.
+  /// Calls check_closely(), then checks the pose and the parameters.
   void check_all();
 
   // ---- user actions
 
-  /// Postcondition: connected, no fault, referenced, force off, and the hand holds the stylus in free space.
+  /// Afterwards the device is connected and referenced without a fault, the force is off, and the hand holds the
+  /// stylus.
   void make_ready();
   void make_active();
   void withdraw_force();
@@ -55,7 +55,7 @@ class Bench {
   void move_hand(device::Vector3 to_m, double duration_s);
   device::Vector3 free_point_m();
   device::Vector3 wall_point_m(double force_N);
-  /// Random buttons, stylus angles and queries.
+  /// Simulates random buttons, stylus angles and queries.
   void fidget();
 
   // ---- parameters
@@ -64,7 +64,7 @@ class Bench {
   void try_illegal();
   void restore_defaults();
   void check_parameters();
-  /// Sets the expected parameters of the board, for example after a restart.
+  /// Sets the expected parameters of the board.
   void hold(const protocol::ParameterSet& set);
 
   [[noreturn]] void fail(Complaint complaint, const std::string& text);
@@ -76,13 +76,13 @@ class Bench {
   const Choices choices;
   protocol::ParameterSet defaults{}, accepted{};
   protocol::ParameterSet stored{};  ///< values after a restart
-  /// Stop condition, which is polled continuously. It is empty while the board starts, so that every sitting completes
+  /// Stop condition, polled continuously. The member is empty while the board starts, so that every sitting completes
   /// the start.
   std::function<bool()> is_over;
-  /// True while the cable is unplugged or the program is killed.
+  /// True while a disconnection is expected.
   bool device_may_go = false;
   bool is_undisturbed() const { return disturbance_ == Disturbance::none; }
-  /// Sets the active disturbance; Disturbance::none if the disturbance was cleared.
+  /// Sets the active disturbance.
   void disturb(Disturbance disturbance);
 
  private:
@@ -93,7 +93,7 @@ class Bench {
   double until_close_check_s_ = 0;
 };
 
-/// Runs a phase of this kind. Returns a description in words.
+/// Runs a phase of this kind. Returns a description of the phase.
 std::string play(Bench& bench, Kind kind);
 
 // The functions below are defined in uses.cpp, storms.cpp, stores.cpp and adversities.cpp.

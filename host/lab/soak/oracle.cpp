@@ -14,7 +14,7 @@ namespace {
 using protocol::Fault;
 using protocol::State;
 
-/// Largest age of poses and bridge states relative to the latest action.
+/// Poses and bridge states may be older than the latest action by this time.
 constexpr double tolerated_delay_s = 0.01;
 
 }  // namespace
@@ -112,10 +112,10 @@ void Oracle::judge_force(const Snapshot& snapshot) {
   else
     note(hardest_press_with_fault_over_ms_, snapshot.peak_motor_force_over_ms_N);
   if (disturbance_ == Disturbance::program) return;
-  // Until the bridges are off, a fault may increase the force of a motor for a few periods. This increase is too short
-  // to move the arm.
+  // A fault may increase the force for a few periods, until the bridges are off. This increase is too short to move the
+  // arm.
   const double judged_N = is_undisturbed ? snapshot.peak_motor_force_N : snapshot.peak_motor_force_over_ms_N;
-  // Noise of the current sensors, which dominates for very small limits.
+  // Force noise of the current sensors.
   constexpr double noise_N = 0.1;
   if (judged_N > force_tolerance * force_limit_N_ + noise_N)
     complain(Complaint::too_much_force, fmt::format("the motor force is {:.2f} N{}, the limit is {:.2f} N", judged_N,

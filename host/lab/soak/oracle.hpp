@@ -1,4 +1,4 @@
-// Compares the behavior of a board with the actions on the board, without side effects. Records all contradictions.
+// Compares the behavior of a board with the expected behavior. Records all contradictions.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ struct Finding {
   std::string text;
 };
 
-/// Largest motor force relative to the force limit at the same time.
+/// Largest ratio of motor force to force limit.
 struct Press {
   double force_N = 0, limit_N = 0;
   unsigned phase = 0;  ///< from 1
@@ -66,8 +66,8 @@ struct Snapshot {
   double board_time_s = 0;
   double driven_until_s = 0;  ///< last time at which a leg was driven high
   unsigned restarts = 0;      ///< since the simulation's start
-  /// Peak motor force at the probe since the last snapshot. Only periods with a driven bridge count. Means over a
-  /// control period and over a millisecond.
+  /// Peak motor forces at the probe since the last snapshot, averaged over a control period and over a millisecond.
+  /// Periods without a driven bridge are ignored.
   double peak_motor_force_N = 0, peak_motor_force_over_ms_N = 0;
 };
 
@@ -81,31 +81,30 @@ enum class Disturbance : std::uint8_t {
 class Oracle {
  public:
   static constexpr double force_tolerance = 1.05;
-  /// For a lower force limit, the noise of the current sensors is too large for a judgment.
+  /// With a lower force limit, the largest force is not recorded, because the current sensors are noisy.
   static constexpr double judged_limit_N = 0.5;
 
   void begin(unsigned phase, Kind kind);
-  /// The cause is cleared, so any further fault report in this phase is an error.
+  /// Every later fault report in this phase is an error.
   void allow_no_fault() { allowed_faults_ = {}; }
-  /// The cause is cleared, but the reference may be wrong. Lost counts may be reported until the next reference.
+  /// Reports of lost counts are allowed until the next reference.
   void allow_lost_counts() { allowed_faults_ = lost_counts; }
   void disturb(Disturbance disturbance) { disturbance_ = disturbance; }
 
-  /// Force is requested from now on.
   void request_force();
-  /// Force is no longer requested, but may continue for this time.
+  /// The force may stay on for `grace_s`.
   void withdraw_force(double grace_s);
   void limit_force(double force_limit_N) { force_limit_N_ = force_limit_N; }
   void expect_restart() { restart_expected_ = true; }
-  /// Poses of a new connection follow.
+  /// Call this before the first pose of a connection.
   void connected() { sequence_.reset(); }
 
   void see(const device::Pose& pose);
   void see(const Snapshot& snapshot);
-  /// Checks the counts of restarts and violated rules since the board's start. Returns true if the chip restarted since
-  /// the last call.
+  /// Checks the number of restarts and the number of violated rules since the board's start. Returns true if the chip
+  /// restarted since the last call.
   bool see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule);
-  /// At least one of these faults must have been reported.
+  /// Records a complaint if none of these faults was reported.
   void require_report_of(protocol::Conditions faults);
   void complain(Complaint complaint, std::string text);
 
@@ -118,20 +117,19 @@ class Oracle {
   double board_time_s() const { return now_s_; }
 
   const std::vector<Finding>& findings() const { return findings_; }
-  /// Peak motor force with the force on and without a disturbance.
+  /// Peak motor force without a disturbance.
   double peak_motor_force_N() const { return peak_motor_force_N_; }
-  /// Largest forces while the force is on and the limit is at least judged_limit_N. The functions with `_with_fault`
-  /// return forces during a disturbance. The function with `_over_ms` returns means over a millisecond. A corrupted
-  /// program also counts as a disturbance.
+  /// Largest forces relative to the force limit. The functions with `_with_fault` return forces during a disturbance.
+  /// The function with `_over_ms` returns means over a millisecond.
   const Press& hardest_press() const { return hardest_press_; }
   const Press& hardest_press_with_fault() const { return hardest_press_with_fault_; }
   const Press& hardest_press_with_fault_over_ms() const { return hardest_press_with_fault_over_ms_; }
-  /// Longest control interrupt as a fraction of its period, without a disturbance.
+  /// Longest control interrupt as a fraction of the control period.
   double longest_interrupt_part() const { return longest_interrupt_part_; }
   unsigned long poses() const { return poses_; }
-  /// Bus frames without a pose, while connected and without a disturbance.
+  /// Number of missing poses without a disturbance.
   unsigned long poses_lost() const { return poses_lost_; }
-  /// Bus frames without a pose during a disturbance, such as a halted core or a silent host.
+  /// Number of missing poses during a disturbance.
   unsigned long poses_kept_back() const { return poses_kept_back_; }
   unsigned restarts() const { return restarts_; }
   const std::map<protocol::Fault, unsigned>& faults_reported() const { return faults_reported_; }

@@ -1,15 +1,15 @@
-// Plan of a soak: the kinds of phases, their frequency, and the faults that a board may report in each kind.
+// The kinds of phases in a soak.
 //
-// A reported fault is a false trip if the kind of the phase does not list this fault. Phases of normal use therefore
-// avoid faults: the hand stays below the speed limit, except in the phase that tests this limit. Some wrong parameters
-// make a fault-free arm look defective: dimensions, resistances, and gains that cause oscillation. These parameters
-// change only while the force is off, or stay close to the correct values (storm.hpp).
+// A fault is a false trip unless the kind of the phase lists this fault. The hand exceeds the speed limit only in one
+// phase. Wrong dimensions, resistances or gains can trip a fault of a working arm. These parameters change only while
+// the force is off, or stay close to the correct values (storm.hpp).
 #pragma once
 
 // To add a kind of phase:
 // (1) Add a row to INKWELL_SOAK_KINDS with the faults that the board may report in this phase.
 // (2) Implement the phase with the functions of Bench and add its case to host/lab/soak/phases.cpp. The compiler
-//     reports a missing case. Only Bench::pass() advances board time, because it also checks the board.
+//     reports a missing case. Use only Bench::pass() to advance board time, because this function also checks the
+//     board.
 
 #include <array>
 #include <cstddef>
@@ -22,7 +22,7 @@
 
 namespace inkwell::soak {
 
-/// A board can detect wrong encoder counts by these faults.
+/// Wrong encoder counts can cause these faults.
 inline constexpr protocol::Conditions lost_counts = protocol::condition(protocol::Fault::encoder_implausible) |
                                                     protocol::condition(protocol::Fault::inkwell_implausible);
 
@@ -75,8 +75,7 @@ inline constexpr auto kind_table = std::to_array<KindInfo>({
 
 constexpr const KindInfo& info(Kind kind) { return kind_table[static_cast<std::size_t>(kind)]; }
 
-/// A list of phases in random order, with the number of phases of each kind from the table. Each kind occurs in every
-/// list.
+/// Returns all phases of the table in random order.
 std::vector<Kind> shuffled_deck(Random& random);
 
 }  // namespace inkwell::soak

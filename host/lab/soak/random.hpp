@@ -1,4 +1,4 @@
-// Random numbers that are the same on every machine, unlike the distributions of the C++ standard library.
+// Random numbers with the same values on every machine.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace inkwell::soak {
 
 class Random {
  public:
-  /// Combines two numbers, so that each sitting of a seed has separate random numbers.
+  /// Each sitting has a separate `stream` of random numbers.
   Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(seed + 0x9E3779B97F4A7C15u * (stream + 1))) {}
 
   double from(double low, double high) { return low + (high - low) * part(); }
-  /// Returns 0 to `count` - 1; `count` must not be 0.
+  /// Returns a number from 0 to `count` - 1. `count` must not be 0.
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(part() * static_cast<double>(count)); }
   bool chance(double probability) { return part() < probability; }
   template <class Container>
@@ -28,7 +28,7 @@ class Random {
   }
 
  private:
-  /// Returns 0 to less than 1.
+  /// Returns a number of at least 0 and less than 1.
   double part() { return static_cast<double>(engine_() >> 11) / 9007199254740992.0; }
   /// Decorrelates adjacent seeds (splitmix64).
   static std::uint64_t mixed(std::uint64_t x) {

@@ -10,7 +10,7 @@ namespace inkwell::soak {
 
 namespace {
 
-/// Counts by name, in alphabetical order.
+/// Returns the counts in alphabetical order.
 template <class Of>
 std::map<std::string, unsigned> by_name(const std::map<Of, unsigned>& counts) {
   std::map<std::string, unsigned> named;
@@ -20,7 +20,7 @@ std::map<std::string, unsigned> by_name(const std::map<Of, unsigned>& counts) {
 
 }  // namespace
 
-// Only written. Names stand for faults, kinds and complaints.
+// Only written. JSON contains the names of faults, kinds and complaints.
 static void to_json(nlohmann::json& out, Kind kind) { out = info(kind).name; }
 static void to_json(nlohmann::json& out, Complaint complaint) { out = name_of(complaint); }
 static void to_json(nlohmann::json& out, const Finding& of) {
@@ -97,7 +97,7 @@ std::string row(std::string_view what, const std::string& figure) {
   return fmt::format("  {:<42}{:>12}\n", what, figure);
 }
 
-/// Table rows for the largest force relative to the limit, and the phase of this force.
+/// Returns the table rows about the largest force.
 std::string rows_of_press(const Soak& soak, Press Sitting::*which, std::string_view what) {
   const auto part_of_limit = [&](const Sitting& sitting) { return (sitting.*which).part_of_limit(); };
   const auto hardest = std::ranges::max_element(soak.sittings, {}, part_of_limit);

@@ -1,4 +1,4 @@
-// Results of a soak: of each sitting, and of all sittings together.
+// Results of a soak.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct Losses {
   unsigned long recorded_samples = 0;
 };
 
-/// The run of one board from start to end.
+/// The run of one virtual board.
 struct Sitting {
   unsigned number = 0;  ///< from 1
   double board_time_s = 0;
@@ -54,12 +54,12 @@ struct Soak {
 
 std::size_t finding_count(const Soak& soak);
 unsigned false_trip_count(const Soak& soak);
-/// A line for one phase, or a table for all phases.
+/// Returns a line about the phase.
 std::string line_of(const Sitting& sitting, const PhaseResult& phase);
 std::string table_of(const Soak& soak);
-/// Returns the command that repeats the sitting of a finding.
+/// Returns the command that repeats this sitting.
 std::string repeat_command(const Soak& soak, unsigned sitting);
-/// A JSON object and a line feed.
+/// Returns a JSON object and a line feed.
 std::string json_of(const Soak& soak);
 
 }  // namespace inkwell::soak

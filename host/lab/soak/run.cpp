@@ -69,7 +69,7 @@ class Run {
     }
   }
 
-  /// Restarts after a failed phase, so that the failure does not affect the next phase.
+  /// Restarts the board after a failed phase, so that the failure does not affect the next phase.
   bool restart() {
     try {
       bench_.device_may_go = false;

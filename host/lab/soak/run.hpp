@@ -15,13 +15,13 @@ struct Choices {
   double use_s = 4;        ///< longest use in a phase, in board time
 };
 
-/// A sitting is the same on any machine, independent of other sittings. `print` receives a line for each phase and
-/// finding. A premature end is a finding, unless `is_stopped` has caused the end. `is_stopped` is polled continuously.
+/// The result depends neither on the machine nor on other sittings. `print` receives a line for each phase and finding.
+/// An early end is a finding unless `is_stopped` has returned true. `is_stopped` is polled continuously.
 Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoardOptions board,
                     const std::function<void(const std::string&)>& print = {},
                     const std::function<bool()>& is_stopped = {});
 
-/// Number of sittings for this board time, if no sitting is longer than choices.sitting_s.
+/// Returns the number of sittings for this board time.
 unsigned sittings_in(double board_time_s, const Choices& choices);
 
 }  // namespace inkwell::soak

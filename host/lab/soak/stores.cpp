@@ -25,7 +25,7 @@ void expect(Bench& bench, Command command, StoreResult expected) {
                fmt::format("the store reported \"{}\" instead of \"{}\"", info(result).name, info(expected).name));
 }
 
-/// The chip restarts during a write. The board then has the previous or the new stored parameters.
+/// Restarts the chip during a write. Afterwards either the previous or the new parameters are stored.
 bool cut_off(Bench& bench) {
   const auto wanted = bench.accepted;
   bench.board.command(Command::store_parameters);

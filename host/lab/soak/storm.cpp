@@ -15,7 +15,7 @@ using protocol::ParameterKind;
 using protocol::ParameterSet;
 using protocol::Refusal;
 
-/// Range of a parameter for Reach::careful: relative to the default, or between two values.
+/// Range of a parameter for Reach::careful.
 struct Careful {
   Parameter parameter;
   float below_default, above_default;  ///< fractions of the default if `by_parts`
@@ -45,7 +45,7 @@ constexpr auto between = std::to_array<Between>({
     {Parameter::voltage_limit_V, 4.0f, 24.0f},
     {Parameter::speed_limit_m_per_s, 2.0f, 10.0f},
     {Parameter::host_timeout_s, 0.05f, 2.0f},
-    // With lower values, a wall would trip the heat fault before the current limit acts.
+    // With a lower value, the heat fault would trip at a wall.
     {Parameter::continuous_current_1_A, 0.5f, 3.0f},
     {Parameter::continuous_current_2_A, 0.5f, 3.0f},
     {Parameter::continuous_current_3_A, 0.5f, 3.0f},
@@ -91,7 +91,7 @@ Parameter random_parameter(Random& random, auto condition) {
   return random.pick(some);
 }
 
-/// Returns the entry that makes a transaction illegal, or std::nullopt for a duplicated entry.
+/// Returns an illegal change, or std::nullopt for a duplicated entry.
 std::optional<device::ParameterChange> illegal_entry(Random& random, const ParameterSet& now, Refusal refusal) {
   const auto any = [](const auto&) { return true; };
   const auto with_choices = [](const auto& row) { return row.kind != ParameterKind::real; };

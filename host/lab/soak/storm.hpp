@@ -1,4 +1,4 @@
-// Random parameter transactions, legal and illegal, from the ranges and bounds of the table. Without side effects.
+// Random parameter transactions, legal and illegal. Without side effects.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@ namespace inkwell::soak {
 using Changes = std::vector<device::ParameterChange>;
 
 enum class Reach : std::uint8_t {
-  /// Values that cause no false faults while the force is on. The dimensions of the arm do not change, and walls stay
-  /// near their default positions. Resistances stay within 10 % of the correct values, because the motor check uses
-  /// them. Gains are 0.5 to 1.2 times their defaults, because higher gains may cause oscillation. Speed limit and host
-  /// time-out stay above the values in use, and at least 4 V remain to drive currents.
+  /// With these values a healthy arm reports no faults. The dimensions of the arm do not change, and walls stay near
+  /// their default positions. Resistances stay within 10 % of the correct values, because the motor check uses them.
+  /// Gains are 0.5 to 1.2 times their defaults, because higher gains may cause oscillation. Speed limit and host
+  /// time-out stay above the values that the phases need.
   careful,
   whole,  ///< all values that the table allows
 };
 
-/// Returns the known parameters that may be changed.
+/// Returns the parameters that may change.
 std::vector<protocol::Parameter> within(Reach reach);
 struct Range {
   float minimum, maximum;
@@ -31,8 +31,7 @@ Range range_of(protocol::Parameter parameter, Reach reach);
 
 protocol::ParameterSet with(protocol::ParameterSet set, std::span<const device::ParameterChange> changes);
 
-/// Returns changes of at least `count` parameters, without contradictory bounds. `now` contains the values of the
-/// device.
+/// Returns valid changes of at least `count` parameters. `now` contains the present parameters of the device.
 Changes legal_changes(Random& random, const protocol::ParameterSet& now, Reach reach, std::size_t count);
 
 struct Illegal {

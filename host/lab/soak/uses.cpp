@@ -24,14 +24,14 @@ using protocol::ForceMode;
 using protocol::Signal;
 
 constexpr double step_s = 0.01;
-// Mean speeds; the peak speed of a minimum-jerk motion is 1.875 times the mean.
+// These are mean speeds. The peak speed of a minimum-jerk motion is 1.875 times the mean speed.
 constexpr double slow_m_per_s = 0.15, fast_m_per_s = 0.8;
-/// The probe overshoots the path of the hand. The speed limit is 3 m/s by default, and 2 m/s in a storm.
+/// The probe can move faster than the hand. The lowest speed limit of a phase is 2 m/s.
 constexpr double fastest_way_m_per_s = 1.0;
 
 double distance_m(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// Moves from point to point at about this speed for the full time. Calls `each` after every step.
+/// Moves the hand from point to point for this time. Calls `each` after every step.
 void wander(Bench& bench, double time_s, double speed_m_per_s, const std::function<Vector3()>& next_m,
             const std::function<void()>& each = {}) {
   Vector3 here_m = bench.board.true_position_m();
@@ -55,7 +55,7 @@ void wander(Bench& bench, double time_s, double speed_m_per_s, const std::functi
 
 double limit_N(const Bench& bench) { return static_cast<double>(bench.accepted[protocol::Parameter::force_limit_N]); }
 
-/// A random hand position: in free space, or pressed into a wall with at most the force limit.
+/// Returns a random hand position in free space or inside a wall.
 Vector3 anywhere_m(Bench& bench) {
   return bench.random.chance(0.5) ? bench.free_point_m() : bench.wall_point_m(bench.random.from(0.0, limit_N(bench)));
 }
@@ -88,16 +88,16 @@ device::Shapes random_shapes(Bench& bench) {
   return shapes;
 }
 
-/// A force program: a spring to a point, a push, or a vibration, with a random rate.
+/// Sends the forces of a spring, a push or a vibration.
 class Program {
  public:
   explicit Program(Bench& bench) : bench_(bench) {
     choose();
-    // A silence of more than one second has ended the claim.
+    // The claim may have expired.
     if (!bench.board.device().drives()) bench.board.device().claim();
   }
 
-  /// Sends one force and lets its interval pass.
+  /// Sends one force and waits for one interval.
   void step() {
     if (left_s_ <= 0) choose();
     const double interval_s = 1e-3 * interval_ms_;
@@ -126,7 +126,7 @@ class Program {
     mode_ = random.chance(0.6) ? ForceMode::beside_walls : ForceMode::instead_of_walls;
     interval_ms_ = random.chance(0.6) ? 1 : static_cast<int>(1 + random.below(20));
     point_m_ = bench_.free_point_m();
-    // With a long interval the hand cannot damp a stiff spring.
+    // With long intervals between forces, the hand cannot damp a stiff spring.
     stiffness_N_per_m_ = random.chance(0.5) ? random.from(0, 200.0 / interval_ms_) : 0.0;
     const double push_N = random.chance(0.1) ? 20.0 : 2.0;
     for (double& along_N : push_N_) along_N = random.from(-push_N, push_N);
@@ -159,7 +159,7 @@ bool the_bus_carries(const std::vector<Signal>& signals) {
   return protocol::encoding_for(selection) == protocol::ScopeEncoding::full;
 }
 
-/// Samples since the last call, and the number of lost samples.
+/// Numbers of received and lost samples since the last call.
 struct ScopeCount {
   unsigned long samples = 0, lost = 0;
 };
@@ -316,7 +316,7 @@ std::string use_recording(Bench& bench, double time_s) {
   }
   note_lost(bench, signals, lost);
   stop_scope(bench);
-  // The recorder's error is more informative than an error of the reader.
+  // The recorder's error explains a later error of the reader.
   if (!status.error.empty()) bench.fail(Complaint::lost_packets, status.error);
   const auto read_back = recording::read(file);
   bench.sitting.lost.recorded_samples += samples - read_back.size();
