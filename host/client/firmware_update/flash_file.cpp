@@ -25,7 +25,7 @@ std::vector<std::byte> read_flash(const std::filesystem::path& name, const local
   return content;
 }
 
-/// Calls `use(file)` and converts its errors to messages of this program.
+/// Calls `use(file)` and converts the file's errors to messages of this program.
 template <class Use>
 void use_flash(const std::filesystem::path& name, Use use) {
   try {

@@ -25,7 +25,7 @@ std::string version_of(const protocol::ImageIdentity& identity) {
   return fmt::format("{}", fmt::join(identity.version(), "."));
 }
 
-/// The build appends a checksum of the image (tools/generate/seal_image.py).
+/// The build appends a checksum to the image (tools/generate/seal_image.py).
 bool is_sealed(const std::vector<Segment>& segments) {
   WordChecksum checksum;
   std::uint32_t word = 0;

@@ -16,7 +16,7 @@
 
 namespace inkwell::firmware_update {
 
-/// The file is not a program for the flash of an STM32F405.
+/// Thrown if the file is not a program for the flash of an STM32F405.
 class NoImage : public device::Error {
  public:
   using Error::Error;
@@ -24,13 +24,14 @@ class NoImage : public device::Error {
 
 enum class Consent : std::uint8_t { none, to_downgrade, to_everything };
 
-/// The image does not suit this board, and the user has not agreed to write it. `what()` lists the reasons.
+/// Thrown if the image does not suit this board and the user has not agreed to write the image. `what()` lists the
+/// reasons.
 class Objected : public device::Error {
  public:
   using Error::Error;
 };
 
-/// The only objection is that the image is older than the board's firmware.
+/// Thrown if the only objection is that the image is older than the board's firmware.
 class Downgrade : public Objected {
  public:
   using Objected::Objected;
@@ -48,7 +49,7 @@ struct Image {
   std::optional<protocol::ImageIdentity> identity{};  ///< none: not an Inkwell image, or one without an identity
   bool is_whole = false;                              ///< the checksum at its end is correct
 
-  /// The byte at an address, or none if the image has no data at this address.
+  /// Returns the byte at an address, or std::nullopt if the image has no data at this address.
   std::optional<std::byte> at(std::uint32_t address) const;
 };
 
@@ -57,11 +58,11 @@ Image read_image(const std::filesystem::path& elf);
 /// Reads an image from the content of a file; `name` is for error messages.
 Image read_image(std::span<const std::byte> elf, const std::filesystem::path& name);
 
-/// The installed firmware for the board with this name, or none if the board is unknown. Throws NoImage if the file is
-/// missing.
+/// Returns the installed firmware for this board name, or std::nullopt if the board is unknown. Throws NoImage if the
+/// file is missing.
 std::optional<Image> own_image_for(std::string_view board);
 
-/// Selects the image for the board with this name if the user has not named an image. May return none.
+/// If the user has not named an image, selects the installed image for this board name. May return none.
 using ImageFor = std::function<std::optional<Image>(std::string_view board)>;
 inline std::optional<Image> always_the_given(std::string_view) { return {}; }
 
@@ -73,8 +74,8 @@ inline constexpr std::size_t identity_end = protocol::image_identity_offset + si
 /// "firmware 0.1.0 for omni_driver, protocol 11".
 std::string describe(const protocol::ImageIdentity& identity);
 
-/// The reasons against writing this image to a board, one sentence each; empty if there is no reason. `there`: identity
-/// of the board's current image, if known.
+/// Returns the objections against writing this image, one sentence each. `there` is the identity of the board's current
+/// image, if known.
 std::vector<std::string> objections(const Image& image, const std::optional<protocol::ImageIdentity>& there);
 /// Returns a sentence if the image is older than the installed firmware. An older image causes a warning, not an
 /// objection.

@@ -10,17 +10,16 @@
 
 namespace inkwell::firmware_update {
 
-/// Whether this is a valid name of an openocd interface file, such as "stlink". Only lower-case letters, digits, '_'
-/// and '-' are allowed, so that the name cannot lead to another folder.
+/// Returns true if this is a valid name of an openocd interface file, such as "stlink". Only lower-case letters,
+/// digits, '_' and '-' are allowed, so that the name cannot lead to another folder.
 bool is_interface_name(std::string_view name);
-/// The error sentence for an invalid name.
+/// Returns the error sentence for an invalid name.
 std::string no_interface_name(std::string_view name);
 
-/// openocd reads these bytes instead of the user's file, and therefore writes nothing else.
 std::string intel_hex(const Image& image);
 
-/// Arguments of openocd for copying the first bytes of the flash to `installed_file` while the firmware continues to
-/// run.
+/// Returns the arguments of openocd that copy the first bytes of the flash to `installed_file`. The firmware continues
+/// to run.
 std::vector<std::string> openocd_arguments_for_reading(const std::string& interface);
 /// Returns the arguments with which openocd writes the sectors of the image, reads them back, and prints
 /// `verified_line`. The arguments also set the brown-out level, if necessary, and start the firmware.

@@ -22,7 +22,7 @@ constexpr auto look_again = 50ms;
 /// In this time the system grants access to a new device or finds its driver.
 constexpr auto system_patience = 5s;
 
-/// `is_chosen`: the image was chosen based on the board's previous image, which is now erased.
+/// `is_chosen` is true if the image was chosen based on the board's erased image.
 std::string how_to_go_on(const Image& image, bool is_chosen) {
   return fmt::format(
       "The board is in its boot loader, without a complete firmware, and its bridges are off. Leave its power on and "
@@ -38,7 +38,8 @@ std::vector<Endpoint> arms_at(const Address& address) {
   return address.kind == Address::Kind::usbip ? device::find_usbip_devices(address.server) : device::find_arms(address);
 }
 
-/// The boot loaders at the address. A serial number in the address excludes boot loaders with other serial numbers.
+/// Returns the boot loaders at the address. A serial number in the address excludes boot loaders with other serial
+/// numbers.
 std::vector<Endpoint> loaders_at(const Address& address) {
   auto loaders = device::find_boot_loaders(address);
   if (!address.serial_number.empty())
@@ -81,7 +82,8 @@ auto if_it_answers(Attempt attempt) -> decltype(attempt()) {
   }
 }
 
-/// Waits for a device that has just appeared. A refusal by the system is an error only if it persists.
+/// Waits for a device that the system has just detected. A refusal by the system is an error only if the refusal
+/// persists.
 template <class Attempt>
 auto wait_for_admitted(Attempt attempt) -> decltype(attempt()) {
   std::optional<std::chrono::steady_clock::time_point> refused_at;
@@ -133,7 +135,7 @@ void insist_for(const Endpoint& arm, const Image& image, const UpdateOptions& op
   insist(options.image_for(board->board_name()).value_or(image), board, options.consent);
 }
 
-/// The boot loader of the selected board, and the serial numbers of the other arms.
+/// Finds the boot loader of the selected board, and the serial numbers of the other arms.
 struct Found {
   Endpoint loader;
   std::set<std::string> other_arms;
@@ -171,7 +173,7 @@ std::vector<Block> blocks_of(const Image& image) {
   return blocks;
 }
 
-/// Steps of a flash write, weighted by their duration.
+/// Steps of a flash write.
 class Writing {
  public:
   Writing(BootLoader& loader, const Image& image, const UpdateOptions& options)

@@ -1,7 +1,7 @@
-// The complete firmware update over USB: from the running firmware to the boot loader of the chip and back.
+// Updates the firmware over USB with the boot loader of the chip.
 //
-// The order of the steps ensures that an incomplete firmware never runs. The first sector, with the vector table, is
-// erased first, and its first block is written last, after all other blocks were verified. Until the last write, the
+// The order of the steps ensures that an incomplete firmware never runs. The first sector contains the vector table and
+// is erased first. The first block is written last, after all other blocks were verified. Until the last write, the
 // flash contains no vectors. After a power loss the chip then runs no code, and the pull-downs keep the bridges off.
 // While the power is on, the chip stays in the boot loader, and repeating the command continues the update. After a
 // power loss the boot loader starts only if BOOT0 is high.
@@ -19,8 +19,8 @@
 
 namespace inkwell::firmware_update {
 
-/// The update stopped after the old firmware was erased and before the new firmware was complete. `what()` describes
-/// how to continue.
+/// Thrown if the update stops after the old firmware was erased and before the new firmware is complete. `what()`
+/// describes how to continue.
 class Interrupted : public device::Error {
  public:
   using Error::Error;
@@ -29,7 +29,7 @@ class Interrupted : public device::Error {
 struct UpdateOptions {
   Consent consent = Consent::none;
   ImageFor image_for = always_the_given;
-  /// Called with each step and the completed fraction, 0 to 1.
+  /// Receives each step and the completed fraction, 0 to 1.
   std::function<void(std::string_view step, double done)> on_progress = [](std::string_view, double) {};
   /// Called between two blocks.
   std::function<bool()> is_cancelled = [] { return false; };
@@ -48,7 +48,7 @@ struct UpdateResult {
 /// Interrupted, or, if the board is unchanged, device::Error.
 UpdateResult update(const device::Address& address, const Image& image, const UpdateOptions& options);
 
-/// The part of an update from the boot loader to the start of the new firmware.
+/// Continues an update in the boot loader until the new firmware starts.
 struct Written {
   std::optional<protocol::ImageIdentity> before;
   Image image;

@@ -1,4 +1,4 @@
-// Computes arm parameters from joint stops and potentiometer end positions, without side effects.
+// Computes arm parameters from joint stops and potentiometer end positions.
 #pragma once
 
 #include <span>
@@ -12,15 +12,14 @@ struct JointStops {
   double width_rad() const { return high_rad - low_rad; }
 };
 
-/// Correction of a joint's angles that moves its stops to the expected angles:
-/// corrected angle = inkwell_rad + scale (angle - old inkwell angle).
+/// Correction of a joint's angles: corrected angle = inkwell_rad + scale (angle - old inkwell angle).
 struct StopsFit {
   double scale;                          ///< 1 if the found travel equals the expected travel
   double inkwell_rad;                    ///< inkwell angle for this scale
   double low_error_rad, high_error_rad;  ///< found minus expected angle, before the correction
 };
 
-/// Tolerance for compliant stops and whole encoder counts.
+/// Tolerance for elastic stops and encoder resolution.
 inline constexpr double stops_tolerance_rad = 0.03;
 
 /// Fits the inkwell angle and, with `fit_scale`, the scale. Without `fit_scale` the scale is 1. `expected` must have a
@@ -34,7 +33,8 @@ struct PotentiometerCurve {
   double offset_rad = 0;
 
   double angle_rad(double ratio) const { return (square_rad * ratio + slope_rad) * ratio + offset_rad; }
-  /// Inverse on the branch given by the sign of the slope. Throws device::Error if the curve is flat.
+  /// Returns the ratio for an angle, on the branch given by the sign of the slope. Throws device::Error if the curve is
+  /// flat.
   double ratio(double angle_rad) const;
 };
 

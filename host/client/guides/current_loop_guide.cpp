@@ -1,5 +1,4 @@
-// Current loops: identifies each motor from voltage pulses, suggests gains and resistances, and tests the gains with
-// current steps.
+// Current loops: measures each motor, suggests gains and resistances, and tests the gains.
 #include "host/client/guides/guides.hpp"
 
 #include <algorithm>
@@ -150,8 +149,8 @@ class IdentifyMotor final : public Step {
     return pulse;
   }
 
-  /// Chooses the second voltage. The second voltage is chosen for twice the current of the later step test, up to the
-  /// allowed current. The estimate uses the first pulse's current and the board's dead-time voltage.
+  /// Chooses the second voltage. The second voltage is chosen for twice the current of the step test, up to the allowed
+  /// current. The estimate uses the first pulse's current and the board's dead-time voltage.
   void choose_voltage() {
     identify(pulses_, period_s, ripple_A);  // throws if the currents do not match the circuit
     const auto wanted_A =
@@ -166,7 +165,7 @@ class IdentifyMotor final : public Step {
     return static_cast<double>(tuning_->board->bridge_dead_time_part()) * recorder_->values_of(Signal::supply_V).back();
   }
 
-  /// Mean current of both pulses during their last millisecond with voltage.
+  /// Mean current of both pulses in the last millisecond of each pulse.
   double settled_A() const {
     constexpr std::size_t samples = protocol::servo_rate_Hz / 1000;
     double sum_A = 0.0;
@@ -206,7 +205,7 @@ class IdentifyMotor final : public Step {
   std::vector<VoltagePulse> pulses_;
 };
 
-/// Applies a current step to each motor, with the device's gains or temporarily with the suggested gains.
+/// Tests the current step of each motor with the device's gains or the suggested gains.
 class TryGains final : public Step {
  public:
   TryGains(std::shared_ptr<Tuning> tuning, std::shared_ptr<Findings> findings, bool suggested)
@@ -329,7 +328,7 @@ class TryGains final : public Step {
     }
     const auto exact = suggest_gains(mean, tuning_->options.bandwidth_Hz);
     tuning_->gains = {to_four_digits(exact.proportional_V_per_A), to_four_digits(exact.integral_V_per_As)};
-    // The bridge applies a voltage for one period, which adds a mean delay of half a period.
+    // The bridge applies a voltage for one period, so the mean delay is half a period.
     const double margin_deg = phase_margin_deg(tuning_->options.bandwidth_Hz, mean.delay_s + period_s / 2);
     for (const auto& [parameter, value] : gains_of(*tuning_->gains)) device::check_value(parameter, value);
     for (std::size_t i = 0; i < tuning_->motors.size(); ++i)

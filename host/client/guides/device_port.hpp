@@ -1,5 +1,5 @@
-// The interface between a guide and a device. No function waits. The window, the command line, and tests without a
-// device can therefore run the same guides.
+// The interface between a guide and a device. No function waits. The window, the command line and tests can therefore
+// run the same guides.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Directions: checks each encoder while the user turns its joint, then checks each motor with a current pulse.
+// Directions: checks each encoder and each motor.
 #include "host/client/guides/guides.hpp"
 
 #include <algorithm>
@@ -71,7 +71,7 @@ class PulseMotor final : public Step {
   double progress() const override { return static_cast<double>(turned_rad_.size()) / 2; }
 
  private:
-  /// True if the stylus is out of the inkwell and the joint is nearly stationary.
+  /// Returns true if the stylus is out of the inkwell and the joint is nearly stationary.
   bool holds_still(const device::Pose& pose) {
     const double angle_rad = static_cast<double>(pose.joint_rad[motor_ - 1]);
     if (is_closed(pose.switches, protocol::Switch::inkwell) ||
@@ -128,7 +128,7 @@ class PulseMotor final : public Step {
     const bool forward = (difference_rad > 0) != encoder_wrong;
     const auto parameter = of_number(Parameter::motor_1_reversed, motor_);
     const bool held_reversed = (*now.parameters)[parameter] == 1.0f;
-    // A test pulse sets the motor current directly, without motor_n_reversed.
+    // A test pulse sets the motor current directly and ignores motor_n_reversed.
     const bool right = forward != held_reversed;
     findings_->sentences.push_back(fmt::format("A positive current turns joint {} {}, {}.", motor_,
                                                forward ? "forward" : "backward",

@@ -57,7 +57,7 @@ class Guide {
   const std::string& outcome() const { return outcome_; }
   const Findings& findings() const { return *findings_; }
   Applied applied() const { return applied_; }
-  /// False while the device has not answered a transaction of this guide.
+  /// Returns false while the device has not answered a transaction of this guide.
   bool at_rest() const { return applied_ != Applied::sent && put_back_.empty(); }
   const std::string& refusal() const { return refusal_; }
 
@@ -82,7 +82,7 @@ class Guide {
   std::uint64_t seen_revision_ = 0;
 };
 
-/// Complete results of a finished guide, for programs.
+/// Complete results of a finished guide.
 nlohmann::ordered_json to_json(const Guide& guide);
 
 }  // namespace inkwell::guides

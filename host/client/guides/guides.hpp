@@ -21,7 +21,7 @@
 
 namespace inkwell::guides {
 
-/// Reference to trust if encoder counts and stops disagree.
+/// Reference for a disagreement between encoder counts and stops.
 enum class StopsTrust : std::uint8_t {
   limits,    ///< limits of the arm: counts per turn or inkwell angles are wrong
   encoders,  ///< counts and inkwell: the limits must be changed to the found stops
@@ -32,7 +32,7 @@ struct AngleRange {
   double maximum_rad;
 };
 struct PotentiometerOptions {
-  /// Angles of the gimbal's stops; std::nullopt: the range of the full track from the arm description.
+  /// Angles of the gimbal's stops. With std::nullopt, the arm description provides the angles.
   std::array<std::optional<AngleRange>, 3> range;
   bool quadratic = false;  ///< a third point in the middle determines the square term
 };

@@ -42,7 +42,7 @@ std::string forward_direction(const protocol::ParameterSet& parameters, int join
   int axis = 0;
   for (int i = 1; i < 3; ++i)
     if (std::abs(moved[i]) > std::abs(moved[axis])) axis = i;
-  // Axes of control::Frame. In the paper's frame the user faces the arm and looks along -x.
+  // Axes of control::Frame. In the paper's frame the user faces the arm and looks in the -x direction.
   constexpr const char* words[2][3][2] = {{{"away from you, to the arm's base", "towards you, off the arm's base"},
                                            {"to the left", "to the right"},
                                            {"down", "up"}},

@@ -1,4 +1,4 @@
-// Steps that several guides use: the stylus rests in the inkwell, or the user turns a joint.
+// Steps that several guides use.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ inline constexpr double user_limit_s = 120;  ///< limit for one step of the user
 /// "the waist", "the shoulder", "the elbow".
 const char* joint_name(int joint);
 
-/// Direction of motion when joint `joint` turns forward, as seen by the user: "to the right", "up" and so on.
+/// Returns the forward direction of a joint for the user, for example "to the right".
 std::string forward_direction(const protocol::ParameterSet& parameters, int joint);
 
 /// Waits until the stylus rests in the inkwell and the encoders are referenced.
 class RestInInkwell final : public Step {
  public:
-  /// `reports`: whether the pose in the inkwell is added to the findings.
+  /// `reports` is true if the findings contain the pose in the inkwell.
   RestInInkwell(std::shared_ptr<Findings> findings, bool reports) : findings_(std::move(findings)), reports_(reports) {}
   std::string title() const override { return "Stylus in the inkwell"; }
   std::string text() const override {
@@ -40,7 +40,7 @@ class RestInInkwell final : public Step {
   std::vector<Check> checks_;
 };
 
-/// Whether each encoder is reversed; std::nullopt if not checked.
+/// `true` for each reversed encoder, or std::nullopt if the encoder was not checked.
 using ReversedEncoders = std::array<std::optional<bool>, 3>;
 
 /// The user turns one joint forward, and the encoder of the joint must count up.

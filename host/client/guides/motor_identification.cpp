@@ -11,7 +11,7 @@
 namespace inkwell::guides {
 namespace {
 
-/// Fitted part of a pulse, from the second sample to the last sample.
+/// The fit uses the second to the last sample of a pulse.
 struct Segment {
   const VoltagePulse* pulse;
   std::size_t begin;  ///< of the pulse: the first period with voltage

@@ -1,13 +1,13 @@
-// Computes resistance and inductance of a motor from its response to voltage pulses, without side effects.
+// Computes resistance and inductance of a motor from voltage pulses.
 //
-// The circuit is  u = R i + L di/dt + e + s(i) U,  sampled once per control period.
-//   `u`  Duty times supply, constant over a period. The voltage acts one period after its computation.
-//   `e`  Back-EMF of the motor while the arm moves: torque constant times motor speed.
-//   `U`  Voltage loss due to the bridges' dead time, with the sign of the current. For currents smaller than the
-//        ripple, the sign changes within a period, and only a part of U is lost.
-// Between two samples the current follows the exact solution, exp(-R T / L). The fit starts at the second sample of the
-// pulse, with the first current as an additional unknown. The delay and the nonlinearity around zero current therefore
-// do not affect the inductance. The delay is a separate result.
+// The circuit is u = R i + L di/dt + e + s(i) U, sampled once per control period.
+//   `u` Duty times supply, constant over a period. The voltage acts one period after its computation.
+//   `e` Back-EMF of the motor while the arm moves: torque constant times motor speed.
+//   `U` Voltage loss due to the bridges' dead time, with the sign of the current. For currents smaller than the ripple,
+//   the sign changes within a period, and only a part of U is lost. Between two samples the current follows the exact
+//   solution, exp(-R T / L). The fit starts at the second sample of the pulse, with the first current as an additional
+//   unknown. The delay and the nonlinearity around zero current therefore do not affect the inductance. The delay is a
+//   separate result.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,8 @@ struct MotorCircuit {
   double residual_A = 0;  ///< root mean square of measured minus fitted current
 };
 
-/// `ripple_A`: half the peak-to-peak current ripple, below which the dead-time loss is proportional to the current.
-/// Throws device::Error if there is no pulse or no current, or if the currents do not match the circuit.
+/// `ripple_A` is half the peak-to-peak current ripple. Below `ripple_A` the dead-time loss is proportional to the
+/// current. Throws device::Error if there is no pulse or no current, or if the currents do not match the circuit.
 MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_period_s, double ripple_A);
 
 struct SuggestedGains {

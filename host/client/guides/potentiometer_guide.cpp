@@ -31,7 +31,7 @@ PotentiometerCurve held_curve(const ParameterSet& set, int axis) {
           value(set, Parameter::gimbal_1_offset_rad, axis)};
 }
 
-/// Angle range of the full potentiometer track, computed from the arm description.
+/// Angle range of the full potentiometer track.
 AngleRange described_range(int axis) {
   const auto curve = held_curve(protocol::default_parameters(), axis);
   return {std::min(curve.angle_rad(0), curve.angle_rad(1)), std::max(curve.angle_rad(0), curve.angle_rad(1))};

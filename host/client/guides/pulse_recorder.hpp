@@ -11,7 +11,7 @@ namespace inkwell::guides {
 
 class PulseRecorder {
  public:
-  /// `seen_in`: the signal that is nonzero during the pulse; `signals` must contain it.
+  /// `seen_in` is the signal that is nonzero during the pulse. `signals` must contain this signal.
   PulseRecorder(protocol::Command command, const protocol::TestPulse& pulse, std::vector<protocol::Signal> signals,
                 protocol::Signal seen_in);
 

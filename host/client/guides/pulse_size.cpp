@@ -9,7 +9,7 @@
 namespace inkwell::guides {
 
 float allowed_pulse_A(const protocol::ParameterSet& set, int motor) {
-  // Margin for the arm's motion during the test and for a resistance that is only roughly known.
+  // Margin for the arm's motion and for an inaccurate resistance.
   constexpr float part = 0.8f;
   constexpr float least_A = 0.2f;
   const control::Settings settings = control::prepare(set);

@@ -11,7 +11,7 @@ namespace inkwell::guides {
 
 class SessionPort final : public DevicePort {
  public:
-  /// `select`: selects the scope signals if the scope has several users.
+  /// `select` selects the scope signals if the scope has several users.
   SessionPort(device::Session& session, std::function<void(std::vector<protocol::Signal>)> select)
       : session_(session), select_(std::move(select)) {}
   explicit SessionPort(device::Session& session)

@@ -161,7 +161,7 @@ void SimulatedUser::advance(const UserTask& task) {
   if (task == task_ && planned_.empty()) return;
   const double now_s = control_.status().board_time_s;
   if (task != task_) {
-    // Remaining actions of the previous step are discarded. A button that the previous step has pressed is released.
+    // Remaining actions of the previous step are discarded. A button of the previous step is released.
     if (!planned_.empty()) control_.buttons(false, false);
     planned_.clear();
     task_ = task;

@@ -1,4 +1,4 @@
-// The user of a virtual board, who performs the user's tasks of a guide with the simulated hand.
+// Simulates the user of a guide with the hand of a virtual board.
 #pragma once
 
 #include <deque>
@@ -11,7 +11,7 @@ namespace inkwell::guides {
 
 class SimulatedUser {
  public:
-  /// `arm`: parameters of the simulated arm, which may differ from the device's parameters.
+  /// `arm` contains the parameters of the simulated arm, which may differ from the device's parameters.
   SimulatedUser(device::ControlClient control, const protocol::ParameterSet& arm);
 
   /// Call repeatedly with the task of the guide's present step. Throws device::Error on errors of the control socket.

@@ -25,7 +25,7 @@ struct Check {
 /// Formats a value with four digits and its unit: "0.1234 rad".
 std::string measured_text(const Check& check);
 
-/// A proposed parameter change. The proposal is not sent before Guide::apply.
+/// A proposed parameter change. Guide::apply sends the proposal.
 struct Proposal {
   protocol::Parameter parameter;
   float held;  ///< value of the device at the time of the measurement
@@ -50,8 +50,7 @@ struct Findings {
                const std::string& reason);
 };
 
-/// The user's task in a step, which a simulated hand can also read. `number` is a joint, gimbal axis or button, counted
-/// from 1.
+/// The user's task in a step. `number` is a joint, gimbal axis or button, counted from 1.
 struct UserTask {
   enum class Kind : std::uint8_t {
     none,
@@ -76,18 +75,18 @@ class Step {
   virtual std::string title() const = 0;
   /// Description of the step and of the user's part; available before begin.
   virtual std::string text() const = 0;
-  /// Whether the user must agree first, because a current will flow or a part will move.
+  /// Returns true if the user must agree first, because a current will flow or the arm will move.
   virtual bool needs_consent() const { return false; }
   virtual UserTask user_task() const { return {}; }
 
   virtual void begin(const Observation&, DevicePort&) {}
   virtual void receive(const device::ScopeSamples&) {}
   virtual bool advance(const Observation& now, DevicePort& port) = 0;
-  /// Whether the user must confirm a part of the step.
+  /// Returns true if the user must confirm an action in this step.
   virtual bool takes_confirmation() const { return false; }
   virtual void confirm() {}
-  /// Previous values of temporarily changed parameters. The guide sends these values at the end of the step, including
-  /// after a failure.
+  /// Previous values of temporarily changed parameters. The guide restores these values at the end of the step,
+  /// including after a failure.
   virtual std::vector<device::ParameterChange> to_put_back() const { return {}; }
 
   virtual std::vector<Check> checks() const { return {}; }

@@ -20,7 +20,7 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 
 struct StopsFound {
-  /// All joint angles at the lower or upper stop of the joint with this index.
+  /// Returns all joint angles at the lower or upper stop of the joint with this index.
   std::array<Angles, 3> low{}, high{};
 };
 

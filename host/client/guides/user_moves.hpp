@@ -1,4 +1,4 @@
-// Common parts of the calibration guides: steps in which the user moves the arm and confirms.
+// Common steps of the calibration guides.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ inline double value(const protocol::ParameterSet& set, protocol::EachAxis<protoc
   return static_cast<double>(set[of_number(rows, number)]);
 }
 
-/// The user moves the arm or the stylus, and confirms with Confirm or button 1.
+/// The user moves the arm or the stylus, then confirms with Confirm or button 1.
 class UserMoves : public Step {
  public:
   void begin(const Observation& now, DevicePort&) override { since_.start(*now.pose); }

@@ -10,7 +10,7 @@ namespace {
 
 std::filesystem::path own_folder() {
   std::error_code code;
-  // For the program itself, the loader knows only the name from the command line.
+  // For the program itself, the loader provides only the name from the command line.
   Dl_info here{};
   if (dladdr(reinterpret_cast<void*>(&own_folder), &here) != 0 && here.dli_fname != nullptr &&
       std::string_view(here.dli_fname).find(".so") != std::string_view::npos) {

@@ -40,8 +40,8 @@ void check_folder(const fs::path& folder, const SocketAddress& where, std::strin
     throw refusal(where, option, "other users may change its folder. Choose a folder that only you can write");
 }
 
-/// Serializes programs that start at the same time. Closing the descriptor releases the lock. If a user permanently
-/// locks a shared folder, the start is delayed by one second.
+/// Serializes programs that start at the same time. Closing the descriptor releases the lock. If another user locks a
+/// shared folder permanently, the start is delayed by one second.
 Descriptor lock_folder(const fs::path& folder) {
   Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   constexpr int tries = 100;

@@ -48,7 +48,7 @@ bool is_named(const Descriptor& file, const fs::path& path) {
   return named.st_dev == status.st_dev && named.st_ino == status.st_ino;
 }
 
-/// The process that has locked this file, according to /proc/locks.
+/// Returns the process that has locked this file, according to /proc/locks.
 std::optional<pid_t> owner_of(const Descriptor& file) {
   const struct stat status = status_of(file);
   std::optional<pid_t> on_another_device;  // some file systems report different device numbers for their files

@@ -34,11 +34,11 @@ class OwnedFile {
   /// Empty, or a sentence if the file system does not support locks. Without a lock, other programs can use the file.
   std::string warning() const;
   bool exists() const { return file_.is_open(); }
-  /// The content if it has exactly this size, otherwise empty. Also empty if the file is not a regular file.
+  /// Returns the content if the file has exactly this size. Returns an empty text if the file is not a regular file or
+  /// has another size.
   std::vector<std::byte> content(std::size_t size) const;
   /// Replaces the content atomically, so that a reader finds the complete old or the complete new content.
-  /// @throws FileInUse if another program has replaced the file. The file of the other program stays unchanged.
-  /// @throws std::system_error if the file cannot be written.
+  /// @throws FileInUse if another program has replaced the file. An exception leaves the file unchanged.
   void replace(std::span<const std::byte> content);
 
  private:

@@ -25,7 +25,7 @@ namespace {
 constexpr char pattern[] = "/inkwell-XXXXXX";
 constexpr std::size_t longest_name = 16;  ///< name of a socket in the folder, with the slash
 
-/// Whether the folder is suitable for sockets and protected against changes by other users.
+/// Returns true if other users cannot change the folder and the folder is suitable for sockets.
 bool is_suitable(const char* folder) {
   if (folder == nullptr || folder[0] != '/' || !only_owner_changes(folder)) return false;
   try {

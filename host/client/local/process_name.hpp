@@ -7,8 +7,7 @@
 
 namespace inkwell::local {
 
-/// "virtual-board (process 4711)", or "process 4711" if the system does not provide the name. The text is safe to
-/// print.
+/// For example "virtual-board (process 4711)", or "process 4711" without a name. The text is safe to print.
 std::string name_of_process(pid_t process);
 
 }  // namespace inkwell::local

@@ -11,7 +11,7 @@
 
 namespace inkwell::local {
 
-/// A text that is not a socket address. `what()` is a sentence.
+/// The text is not a socket address. `what()` is a sentence.
 class BadSocketAddress : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -15,7 +15,7 @@ class UnixName {
  public:
   static constexpr std::size_t longest_path = sizeof(sockaddr_un::sun_path) - 1;
 
-  /// Longer paths are truncated, so the caller must check the length.
+  /// Longer paths are truncated, so the caller must check the length of the path.
   explicit UnixName(const std::filesystem::path& path) {
     address_.sun_family = AF_UNIX;
     const std::string text = path.string();

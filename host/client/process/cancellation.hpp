@@ -1,5 +1,5 @@
 // Support for program threads that are canceled with pthread_cancel() during a library call. A canceled thread unwinds
-// its stack from the system call in which the thread waits. Most of this code does not support unwinding.
+// its stack from a system call. Most of this code does not support unwinding.
 #pragma once
 
 #include <pthread.h>
@@ -61,8 +61,7 @@ class NoCancellationPoints {
   int state_;
 };
 
-/// Library threads that call functions of the program use this function, because the program must not unwind the
-/// library's stack.
+/// Call this in library threads before functions of the program.
 inline void never_cancel_this_thread() { pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr); }
 
 }  // namespace inkwell::process

@@ -9,7 +9,7 @@
 
 namespace inkwell::process {
 
-/// The process in which an object was created. In a forked child the object is an unusable copy.
+/// The process that created an object. In a forked child the object is an unusable copy.
 class Origin {
  public:
   bool is_here() const { return process_ == getpid(); }

@@ -18,7 +18,7 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// Returns std::nullopt also for numbers out of range.
+/// Returns std::nullopt for numbers out of range.
 template <class Whole>
 std::optional<Whole> whole_number(std::string_view text) {
   Whole value = 0;
@@ -46,7 +46,7 @@ class CsvReader {
     std::string line;
     while (std::getline(stream_, line)) {
       ++line_number_;
-      // The last line of a killed program may be incomplete. An incomplete line is ignored.
+      // If the program was killed, the last line may be incomplete. An incomplete line is ignored.
       if (stream_.eof()) break;
       if (line.starts_with("# "))
         comment(std::string_view(line).substr(2));

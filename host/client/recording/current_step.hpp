@@ -1,4 +1,4 @@
-// Evaluation of a recorded current step, without side effects.
+// Evaluates a recorded current step.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ struct CurrentStep {
 };
 
 /// Evaluates the first pulse in the reference. Both arguments contain one current in ampere for each control period.
-/// Throws device::Error if there is no pulse or the current never rises.
+/// Throws device::Error if there is no pulse or if the current never rises.
 CurrentStep current_step(const std::vector<float>& reference_A, const std::vector<float>& current_A);
 
 }  // namespace inkwell::recording

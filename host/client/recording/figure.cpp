@@ -34,7 +34,7 @@ struct Range {
   std::size_t begin, end;
 };
 
-/// True if each sample is drawn as one point at its time. Samples of a black box need not be evenly spaced.
+/// Returns true if each sample is drawn as one point. Samples of a black box need not be evenly spaced.
 bool has_point_each(const Recording& recording, Range shown) {
   return recording.information.step_periods > 1 && shown.end - shown.begin <= points_maximum;
 }
@@ -88,8 +88,7 @@ FigureData data_of(const Recording& recording, const std::vector<Quantity>& quan
     }
     return data;
   }
-  // If there are few samples, each sample is one point. The half period prevents a rounding error from moving a sample
-  // into the next point.
+  // If there are few samples, each sample is one point. The half period compensates for rounding errors.
   const double half_period_s = 0.5 / protocol::servo_rate_Hz;
   const double step_s = (to_s - from_s + 2 * half_period_s) / static_cast<double>(points);
   std::size_t begin = shown.begin;
@@ -178,7 +177,7 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
   return text;
 }
 
-/// Right edge of the panes, with space for the longest name.
+/// Right edge of the panes.
 double right_edge(const Recording& recording, const Overlay* over, const std::vector<FigurePane>& panes) {
   std::size_t longest = over == nullptr ? 0 : std::max(recording.name.size(), over->recording().name.size());
   for (const auto& pane : panes)
@@ -229,7 +228,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
   for (int i = 0; i < count; ++i, top -= pane_pixels + pane_gap_pixels) {
     const auto& pane = panes[static_cast<std::size_t>(i)];
     if (i == 1) {
-      // gnuplot would repeat the first pane's labels in every pane.
+      // Without this command, gnuplot would repeat the labels of the first pane in every pane.
       text += "unset label\nunset arrow\n" + marks(recording, from_s, to_s, false);
     }
     if (i + 1 == count)
@@ -237,7 +236,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
                           gnuplot_text(time_label(recording, to_s - from_s)));
     text += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n",
                         static_cast<double>(top) / height, static_cast<double>(top - pane_pixels) / height);
-    // A label replaces ylabel, whose position depends on the width of the tick labels in each pane.
+    // A label replaces ylabel, because the position of ylabel differs between panes.
     text += fmt::format("set label 3 {} at screen 0.018, graph 0.5 center rotate textcolor rgb ink noenhanced\n",
                         gnuplot_text(pane.label));
     text += tics_of(pane, data);
@@ -259,7 +258,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
   return text + "unset multiplot\n";
 }
 
-/// Names and unit, limited to the length of their axis; the legend contains every name.
+/// The text is limited to the length of its axis.
 std::string label_of(const std::vector<std::string>& words, std::string_view unit) {
   constexpr std::size_t letters_maximum = 26;
   std::string names = fmt::format("{}", fmt::join(words, ", "));

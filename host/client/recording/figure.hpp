@@ -27,7 +27,7 @@ struct FigurePane {
 std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities);
 
 /// Draws a PNG with gnuplot. Throws device::Error with a sentence if a quantity was not recorded, or the time range
-/// contains no samples. The function also throws if the picture cannot be written, or if gnuplot fails.
+/// contains no samples. Throws device::Error if the picture cannot be written or if gnuplot fails.
 void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture);
 
 }  // namespace inkwell::recording

@@ -1,4 +1,4 @@
-// The two file formats of recording::create and recording::read.
+// The HDF5 and CSV formats of recordings.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ std::string force_law_digits(const Information& information);
 /// force law becomes a remark with the file's name.
 void take_force_law(Recording& recording, std::string_view digits, std::string_view file);
 
-/// True if the number of a control period in a file is plausible: at most thirty years.
+/// Returns true if the number of a control period in a file is plausible: at most thirty years.
 bool can_be_period(std::int64_t written);
 /// Returns the control period that follows `before` in a file. Files of earlier versions store only the lower 32 bits,
 /// which wrap.

@@ -22,7 +22,7 @@ set xlabel 'time  /  s' textcolor rgb ink
 set style fill transparent solid 0.22 noborder
 )";
 
-/// Characters without a special meaning in gnuplot's double quotes, macros and formats.
+/// Replaces characters with a special meaning in gnuplot.
 bool is_harmless(char c) {
   constexpr std::string_view marks = " _.,:;()/+-=<>";
   const bool is_utf8 = (static_cast<unsigned char>(c) & 0x80u) != 0;

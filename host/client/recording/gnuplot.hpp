@@ -1,4 +1,4 @@
-// Common parts of all figures: the style, the band that represents many samples, and gnuplot.
+// Common code of all figures.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,8 @@ struct Band {
   double mean, minimum, maximum;
 };
 
-/// Band of value_at(0) to value_at(count - 1). Without values all members are NaN, which leaves a gap in the figure.
+/// Returns the band of value_at(0) to value_at(count - 1). Without values all members are NaN, which leaves a gap in
+/// the figure.
 template <class ValueAt>
 Band band_of(std::size_t count, ValueAt value_at) {
   if (count == 0) return {std::nan(""), std::nan(""), std::nan("")};

@@ -35,7 +35,7 @@ class Handle {
 };
 
 /// Every use of HDF5 requires this object. The object serializes the threads, because the library is not thread-safe.
-/// The object also disables the library's error output, because errors become exceptions with sentences.
+/// The object also disables the library's error output, because the wrapper throws exceptions.
 class QuietHdf5 {
  public:
   QuietHdf5();

@@ -38,7 +38,7 @@ class Hdf5Input {
 
   /// Declared number of elements in a column.
   std::uint64_t length_of(const std::string& column) const;
-  /// The first `count` elements of a column.
+  /// Returns the first `count` elements of a column.
   std::vector<std::int64_t> whole_numbers(const std::string& column, std::uint64_t count);
   std::vector<float> real_numbers(const std::string& column, std::uint64_t count);
   std::vector<std::string> texts(const std::string& column, std::uint64_t count);

@@ -11,7 +11,7 @@ namespace inkwell::recording {
 
 namespace {
 
-/// Whether geometry, motors and gimbal match the default arm.
+/// Returns true if geometry, motors and gimbal match the default arm.
 bool is_default_arm(const protocol::ParameterSet& parameters) {
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     const auto& row = protocol::known_parameters()[i];

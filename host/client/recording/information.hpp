@@ -37,8 +37,8 @@ struct Information {
   std::vector<protocol::SimulatedQuantity> simulated;
 };
 
-/// Metadata for a recording that starts now. If `arm` is empty and the parameters match the default arm, its name is
-/// used.
+/// Returns the metadata for a recording that starts now. If `arm` is empty and the parameters match the default arm,
+/// its name is used.
 Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
                      std::vector<protocol::Signal> signals, const std::string& arm, bool simulation);
 

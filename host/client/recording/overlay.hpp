@@ -22,7 +22,7 @@ class Overlay {
   const Recording& recording() const { return over_; }
   /// Start of the overlaid recording, relative to the first sample of the base.
   double begins_s() const { return static_cast<double>(shift_periods_) / protocol::servo_rate_Hz; }
-  /// Values at the control periods of a block of the base recording; NaN for missing values.
+  /// Returns the values at the control periods of the base recording. Missing values are NaN.
   device::ScopeSamples compared_with(const device::ScopeSamples& of_base) const;
 
  private:
@@ -31,8 +31,8 @@ class Overlay {
   std::int64_t shift_periods_ = 0;    ///< start of the overlaid recording, in periods of the base
 };
 
-/// Distinct names for two recordings: file names without folder and extension. If the file names are the same, folders
-/// or extensions are included.
+/// Returns distinct names for two recordings. The names are file names, with folders or extensions if the file names
+/// are equal.
 std::pair<std::string, std::string> distinct_names(const std::filesystem::path& one,
                                                    const std::filesystem::path& other);
 

@@ -42,9 +42,9 @@ struct Recording {
   double elapsed_s_at(std::int64_t period) const {
     return periods.empty() ? 0.0 : device::board_time_s(period - periods.front());
   }
-  /// Duration from the first sample to the last sample; 0 without samples.
+  /// Duration from the first to the last sample, or 0 without samples.
   double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }
-  /// Index of the first sample at or after the time `elapsed_s`; size() if there is no such sample.
+  /// Returns the index of the first sample at or after the time `elapsed_s`, or size() after the last sample.
   std::size_t sample_at(double elapsed_s) const;
   /// Signals, then simulated quantities.
   std::vector<Quantity> quantities() const;
@@ -61,7 +61,7 @@ struct Recording {
   device::ScopeSamples held_sample(std::size_t sample) const;
   /// Adds samples of information.signals to a recording without simulated columns.
   void append(const device::ScopeSamples& samples);
-  /// Deletes the samples before `begin` and from `end` on.
+  /// Deletes the samples before `begin`, the sample at `end` and all later samples.
   void keep(std::size_t begin, std::size_t end);
 };
 

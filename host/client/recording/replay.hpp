@@ -27,7 +27,7 @@ class Replay {
   double speed() const { return speed_; }
   bool is_playing() const { return is_playing_; }
 
-  /// Starts the replay. A replay that has reached the end restarts from the beginning.
+  /// Starts the replay. If the replay has reached the end, it restarts from the beginning.
   void play();
   void pause() { is_playing_ = false; }
   /// Moves to a time since the first sample, limited to the recording.

@@ -18,8 +18,8 @@ std::vector<protocol::Signal> standard_signals();
 /// scope.
 std::vector<protocol::Signal> signal_path();
 
-/// Parses comma-separated names. For an unknown name, throws device::Error with the nearest signal. The function also
-/// throws if there are more signals than the scope can transmit.
+/// Parses comma-separated names. For an unknown name, throws device::Error with the nearest signal. Throws
+/// device::Error if there are more signals than the scope can transmit.
 std::vector<protocol::Signal> parse_signals(std::string_view names);
 
 /// Parses comma-separated names of signals and simulated quantities. For an unknown name, throws device::Error with the
