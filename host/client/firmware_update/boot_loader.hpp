@@ -20,7 +20,7 @@ struct Sector {
   bool operator==(const Sector&) const = default;
 };
 
-/// Parses the sectors in the name of an alternate setting (UM0424): "@Internal Flash /0x08000000/04*016Kg,01*064Kg".
+/// Parses the sectors in the name of an alternate setting (UM0424): "@Internal Flash  /0x08000000/04*016Kg,01*064Kg".
 /// Returns an empty list if the name has another format.
 std::vector<Sector> parse_memory_layout(std::string_view name);
 

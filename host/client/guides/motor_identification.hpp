@@ -1,13 +1,13 @@
 // Computes resistance and inductance of a motor from voltage pulses.
 //
-// The circuit is u = R i + L di/dt + e + s(i) U, sampled once per control period.
-//   `u` Duty times supply, constant over a period. The voltage acts one period after its computation.
-//   `e` Back-EMF of the motor while the arm moves: torque constant times motor speed.
-//   `U` Voltage loss due to the bridges' dead time, with the sign of the current. For currents smaller than the ripple,
-//   the sign changes within a period, and only a part of U is lost. Between two samples the current follows the exact
-//   solution, exp(-R T / L). The fit starts at the second sample of the pulse, with the first current as an additional
-//   unknown. The delay and the nonlinearity around zero current therefore do not affect the inductance. The delay is a
-//   separate result.
+// The circuit is  u = R i + L di/dt + e + s(i) U,  sampled once per control period.
+//   `u`  Duty times supply, constant over a period. The voltage acts one period after its computation.
+//   `e`  Back-EMF of the motor while the arm moves: torque constant times motor speed.
+//   `U`  Voltage loss due to the bridges' dead time, with the sign of the current. For currents smaller than the
+//        ripple, the sign changes within a period, and only a part of U is lost.
+// Between two samples the current follows the exact solution, exp(-R T / L). The fit starts at the second sample of the
+// pulse, with the first current as an additional unknown. The delay and the nonlinearity around zero current therefore
+// do not affect the inductance. The delay is a separate result.
 #pragma once
 
 #include <cstddef>

@@ -31,7 +31,7 @@ class Recorder {
   /// Adds samples of the recording's signals; other signals are ignored. A restart of the board ends the recording.
   /// Never blocks. If more than 64 MB are queued for the disk, samples are dropped and counted as lost.
   void push(const device::ScopeSamples& samples);
-  /// Marks the newest sample. Before the first sample, this function marks the first sample.
+  /// Marks the newest sample. Without samples, marks the first sample that arrives.
   void mark(const std::string& text);
   /// Records an event of the device at its control period. Without a period, the event is recorded like a user's mark.
   void note(const device::Event& event);
