@@ -12,7 +12,7 @@ bool is_of_devices(std::uint32_t address) {
 
 }  // namespace
 
-// Unicorn's memory protection unit is not used, because Unicorn cannot distinguish mapped and unmapped addresses. The
+// Unicorn's model of the MPU is not used, because this model cannot distinguish mapped and unmapped addresses. The
 // engine caches the access rights of each page. In pages that contain an MPU region boundary, the engine checks each
 // access.
 std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, Role role) const {
@@ -49,7 +49,7 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
 int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
   const auto& protection = machine_.memory_protection;
   if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
-  // If the result is negative, the engine checks each access, including alignment.
+  // After a negative result, the engine checks rights and alignment at each access.
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;
   int rights = 0;
@@ -62,7 +62,7 @@ int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role
   return rights;
 }
 
-// True for Device and Strongly-ordered memory (ARMv7-M, A3.2.1 and A3.5).
+// Returns true for Device and Strongly-ordered memory (ARMv7-M, A3.2.1 and A3.5).
 bool Processor::is_device(std::uint32_t address, Role role) const {
   const auto& protection = machine_.memory_protection;
   const bool on_private_bus = address - private_bus_base < private_bus_bytes;

@@ -1,4 +1,4 @@
-// Contents of flash, SRAM, CCM and system memory by address. The class Memory owns the bytes (memory/memory.hpp).
+// Access to flash, SRAM, CCM and system memory. The class Memory owns the bytes (memory/memory.hpp).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ std::string hexadecimal(std::uint32_t value);
 class AddressSpace {
  public:
   using Bytes = std::span<std::uint8_t>;
-  /// The sizes are those of memory_map.hpp.
+  /// The sizes must match memory_map.hpp.
   AddressSpace(Bytes flash, Bytes sram, Bytes ccm, Bytes system)
       : flash_(flash), sram_(sram), ccm_(ccm), system_(system) {}
 
@@ -23,12 +23,12 @@ class AddressSpace {
   std::uint8_t* ccm() { return ccm_.data(); }
   std::uint8_t* system() { return system_.data(); }
 
-  /// Host pointer to the `bytes` bytes at `address`, or nullptr if no single memory contains all bytes.
+  /// Returns a pointer to the memory at `address`. Returns nullptr if no memory contains all `bytes` bytes.
   std::uint8_t* at(std::uint32_t address, std::uint32_t bytes);
   const std::uint8_t* at(std::uint32_t address, std::uint32_t bytes) const {
     return const_cast<AddressSpace*>(this)->at(address, bytes);
   }
-  /// Like at(), but only for RAM (SRAM and CCM).
+  /// Returns the result of at() for SRAM and CCM, otherwise nullptr.
   std::uint8_t* ram_at(std::uint32_t address, std::uint32_t bytes);
   std::uint32_t word(std::uint32_t address) const {
     std::uint32_t value = 0;

@@ -1,4 +1,4 @@
-// Address windows of the registers.
+// Address ranges of the registers.
 #pragma once
 
 #include <unicorn/unicorn.h>
@@ -8,8 +8,8 @@
 
 namespace inkwell::virtual_board {
 
-/// Address range whose accesses by the processor call `read` and `write` with the bus as last argument. Function
-/// pointers instead of a virtual interface keep an access as short as Unicorn allows.
+/// Processor accesses to this address range call `read` or `write` with the bus as last argument. Function pointers are
+/// faster here than virtual functions.
 struct BusWindow {
   std::uint32_t base, bytes;
   uc_cb_mmio_read_t read;
@@ -19,7 +19,7 @@ struct BusWindow {
 struct BusWindows {
   std::span<const BusWindow> list;
   void* bus;
-  /// True if a window contains the address.
+  /// Returns true if a window contains the address.
   bool answer(std::uint32_t address) const {
     for (const BusWindow& window : list)
       if (address - window.base < window.bytes) return true;

@@ -25,12 +25,12 @@ struct ChipOptions {
   bool slowest_flash = false;  ///< longest erase and program times of the data sheet instead of the typical times
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
   std::uint32_t random_seed = 1;  ///< for the RNG peripheral and for flash operations that a reset interrupts
-  /// Receives each line of the log (without a newline). By default the log goes to stderr.
+  /// The chip calls this function with each log line, without the newline. By default the log is written to stderr.
   std::function<void(const std::string&)> log;
-  /// Returns the name of the function at `address` for log lines, or an empty string. By default log lines contain no
-  /// function names.
+  /// Returns the name of the function at `address`, or an empty string. Log lines contain this name.
   std::function<std::string(std::uint32_t address)> name_of_code;
-  /// Called before each instruction in exact mode. `cycles` is the number of cycles that the processor has run.
+  /// In exact mode, the processor calls this function before each instruction. `cycles` is the cycle counter of the
+  /// core.
   std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
 };
 

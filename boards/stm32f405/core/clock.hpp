@@ -1,4 +1,4 @@
-// Clocks of the chip, with exact conversion between clock cycles and ticks of board time.
+// Clocks of the chip. Clock cycles are converted exactly to ticks of board time.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ namespace inkwell::virtual_board {
 
 inline constexpr Ticks never = std::numeric_limits<Ticks>::max();
 
-/// The period of a clock is numerator / denominator ticks. For most clocks of the chip the denominator is 1, because
-/// the frequency divides ticks_per_s.
+/// The period of a clock is numerator / denominator ticks. The denominator is 1 if ticks_per_s is a multiple of the
+/// frequency.
 struct Clock {
-  /// If the crystal has a frequency deviation, numerator and denominator are large.
+  /// Products of cycles and periods can exceed 64 bits.
   __extension__ using Wide = unsigned __int128;
 
   std::uint64_t numerator = 0;  ///< 0: the clock is stopped
@@ -42,7 +42,7 @@ struct Clock {
   std::uint64_t periods_in(Ticks time, std::uint64_t divider) const { return cycles_in(time) / divider; }
 };
 
-/// Configured frequencies in Hz, 0 for stopped clocks.
+/// Configured frequencies in Hz. A stopped clock has 0.
 struct Clocks {
   std::uint32_t system_Hz, hclk_Hz, pclk1_Hz, pclk2_Hz;
   std::uint32_t timer1_Hz;  ///< timers on APB1
@@ -50,7 +50,7 @@ struct Clocks {
   std::uint32_t usb_Hz;     ///< PLL48CLK
 };
 
-/// Current clocks (RM0090, figure "Clock tree").
+/// Configured clocks (RM0090, figure "Clock tree").
 struct ClockTree {
   Clock hclk, pclk1, pclk2, timer1, timer2, usb, low_speed_internal;
   Clocks frequencies{};
@@ -60,7 +60,7 @@ struct ClockTree {
   }
 };
 
-/// Interface for models that must react to a clock change.
+/// Interface that notifies a model of clock changes.
 class ClockUser {
  public:
   virtual ~ClockUser() = default;

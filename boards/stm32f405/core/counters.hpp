@@ -1,4 +1,4 @@
-// Causes of resets, and counters of the processor.
+// Reset causes and processor counters.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Reset flags in the order of RCC_CSR bits 26 to 31, then bit 25.
+/// Reset flags. The order is RCC_CSR bit 26 to bit 31, then bit 25.
 enum class ResetCause : std::uint8_t {
   pin,
   power_on,
@@ -25,8 +25,7 @@ inline constexpr std::size_t reset_causes = 7;
 
 struct ExceptionCounters {
   std::uint64_t count = 0;
-  /// Cycles of the longest handler run, including entry and return, but without the exceptions that preempted the
-  /// handler.
+  /// Cycles of the longest handler run, with entry and return. Preempting exceptions are not included.
   std::uint64_t longest_cycles = 0;
 };
 

@@ -1,4 +1,4 @@
-// Freezes SysTick while a debug probe halts the core (ARMv7-M, B3.3.1). The peripherals selected by firmware also
+// Freezes SysTick while a debug probe halts the core (ARMv7-M, B3.3.1). Firmware selects the peripherals that also
 // freeze (RM0090, "Debug MCU APB1 freeze register", "APB2 freeze register"). DBG_I2Cx_SMBUS_TIMEOUT has no effect,
 // because the modeled I2C bus has no time-out.
 #pragma once

@@ -1,4 +1,4 @@
-// Debug access to the processor. Board time is stopped during the access.
+// Debug access to the processor. Board time does not advance during an access.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Core registers of the programmer's model, without the FPU.
+/// Core registers without the FPU registers.
 struct CoreRegisters {
   std::array<std::uint32_t, 16> general{};  ///< R0 to R12, SP, LR, PC
   std::uint32_t xpsr = 0;
@@ -36,23 +36,23 @@ struct DebugStop {
   std::uint32_t address = 0;  ///< accessed address, for watch points
 };
 
-/// Debugger of a chip. Use exact mode: in fast mode the processor stops only between blocks. Not allowed inside
-/// run_until().
+/// Debugger interface of a chip. Use exact mode, because in fast mode the processor stops only between blocks. Do not
+/// call these functions during run_until().
 class DebugPort {
  public:
   virtual ~DebugPort() = default;
-  /// Makes BKPT instructions stop the processor. Firmware can read that a debugger is present.
+  /// After attach(), BKPT instructions stop the processor. Firmware can detect an attached debugger.
   virtual void attach() = 0;
   /// Removes all breakpoints and watch points.
   virtual void detach() = 0;
 
   virtual CoreRegisters core_registers() const = 0;
-  /// Sets the core registers. The function writes only the flags of xPSR.
+  /// Sets the core registers. In xPSR, the function changes only the flags.
   virtual void set_core_registers(const CoreRegisters& registers) = 0;
   virtual FloatRegisters float_registers() const = 0;
   virtual void set_float_registers(const FloatRegisters& registers) = 0;
 
-  /// Reads memory or peripheral registers. Register reads have side effects. Returns false for an unmapped address.
+  /// Reads memory or peripheral registers. Register reads can have side effects. Returns false for an unmapped address.
   virtual bool read(std::uint32_t address, std::span<std::uint8_t> bytes) = 0;
   /// Writes RAM or peripheral registers. Returns false if the address is not writable.
   virtual bool write(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
@@ -62,9 +62,9 @@ class DebugPort {
   virtual void add_watch_point(const WatchPoint& watch_point) = 0;
   virtual void remove_watch_point(const WatchPoint& watch_point) = 0;
 
-  /// Makes the next run_until() continue past a breakpoint at the current address.
+  /// The next run_until() ignores a breakpoint at the current address.
   virtual void resume() = 0;
-  /// Makes the next run_until() execute one instruction, or one whole if-then block, without interrupts.
+  /// The next run_until() executes one instruction or one complete if-then block. No interrupt handler runs.
   virtual void step() = 0;
   virtual DebugStop last_stop() const = 0;
 };

@@ -14,11 +14,11 @@ struct Debugging {
   std::set<std::uint32_t> breakpoints;
   /// The program resumes at this address. The stop at this address has already been reported.
   std::optional<std::uint32_t> resumed_at;
-  /// Address of the watch point that the current instruction has accessed.
+  /// Watch point address accessed by the current instruction.
   std::optional<std::uint32_t> touched;
   DebugStop last_stop;
 
-  /// True if the processor must stop before the instruction at `address`.
+  /// Returns true if the processor must stop before the instruction at `address`.
   bool stops_at(std::uint32_t address) const {
     return touched || (steps && !resumed_at) || (resumed_at != address && breakpoints.contains(address));
   }

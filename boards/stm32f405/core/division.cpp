@@ -1,5 +1,5 @@
-// Raises a fault at a division by zero if CCR.DIV_0_TRP is set (ARMv7-M, A7.7.127 and B3.2.8). Unicorn always returns
-// 0.
+// Raises a fault at a division by zero if CCR.DIV_0_TRP is set (ARMv7-M, A7.7.127 and B3.2.8). Unicorn itself raises no
+// fault and returns 0 as the quotient.
 #include <utility>
 
 #include "boards/stm32f405/core/processor.hpp"
@@ -10,7 +10,7 @@ bool Processor::divides_by_zero(std::uint32_t address) const {
   const std::uint16_t first = machine_.memory.half_word(address), second = machine_.memory.half_word(address + 2);
   const bool divides = (first & 0xFFD0) == 0xFB90 && (second & 0xF0F0) == 0xF0F0;  // SDIV, UDIV
   if (!divides || register_reader()(second & 0xF) != 0) return false;
-  // Unicorn cannot be stopped inside an if-then block, so a division by zero in such a block returns 0 without a fault.
+  // Unicorn cannot be stopped in an if-then block. A division by zero in an if-then block therefore raises no fault.
   if (machine_.options.mode == Mode::exact) return !in_if_then_block(address);
   for (std::uint32_t at = last_code_address_; at < address; at += is_wide(machine_.memory.half_word(at)) ? 4 : 2)
     if (if_then_block_covers(at, address)) return false;

@@ -33,7 +33,7 @@ namespace {
 
 thread_local EngineCalls* in_use = nullptr;
 
-/// Functions of the engine. A pointer is null if the installed version lacks the function.
+/// Functions of the engine. A pointer is null if the installed Unicorn version lacks the function.
 struct Engine {
   using PageFunction = void(void* processor, std::uint32_t address);
   using Function = void(void* processor);
@@ -64,7 +64,7 @@ const Engine& engine() {
   return functions;
 }
 
-/// Instruction that the engine is translating on this thread.
+/// The engine is translating this instruction.
 struct Translated {
   std::uint32_t block = 0, address = 0;
   std::uint16_t first = 0, second = 0;
@@ -81,7 +81,7 @@ struct Translated {
 };
 thread_local Translated translated;
 
-/// Converts the translation regime index of an M-profile processor to a role.
+/// Converts an MMU index of the engine to a role.
 EngineCalls::Role role_of(unsigned index) {
   constexpr unsigned privileged = 1, negative_priority = 2;
   return {(index & privileged) != 0, (index & negative_priority) != 0};
@@ -129,7 +129,7 @@ void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::ui
   in_use->remember_processor(processor);
   const std::uint32_t page = address & ~(page_bytes - 1);
   const int allowed = in_use->rights_in_page(page, page_bytes, role_of(index));
-  // The engine does not cache an entry that is smaller than a page, so the engine checks each access to the page.
+  // The engine does not cache entries smaller than a page, so it checks each access to this page.
   if (allowed < 0)
     return engine().set_page(processor, address, physical, attributes, rights, index, not_the_whole_page);
   engine().set_page(processor, address, physical, attributes, rights & allowed, index, bytes);
@@ -159,9 +159,9 @@ void arm_cpu_do_unaligned_access_arm(void* processor, std::uint64_t address, int
 
 std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address) {
   using namespace inkwell::virtual_board;
-  // For a fetch fault inside a block the engine reports the program counter of the first instruction. If an instruction
-  // would fault inside a block, this function returns a self-branch, which ends the block. The next block then starts
-  // with the faulting instruction.
+  // For a fetch fault inside a block, the engine reports the address of the first instruction of the block. For an
+  // instruction that would fault inside a block, this function returns the code of `b .`. This branch ends the block.
+  // The next block then starts with the faulting instruction.
   constexpr std::uint32_t branch_to_itself = 0xE7FE;
   const bool may_end = in_use != nullptr && address != translated.block && translated.begins_at(address);
   if (may_end && !in_use->may_fetch(address)) return branch_to_itself;

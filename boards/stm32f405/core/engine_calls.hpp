@@ -5,7 +5,7 @@
 // program replaces the engine's function and calls the original function. The replaced functions translate loads and
 // stores, fill the address cache, perform uncached accesses, and report whether a priority is negative. The
 // replacements check alignment and access rights. Allowed accesses remain as fast as without checks. A refused access
-// faults with the program counter and if-then state of its instruction.
+// raises a fault with the correct program counter and if-then state.
 #pragma once
 
 #include <cstdint>
@@ -26,28 +26,29 @@ class EngineCalls {
   };
 
   virtual ~EngineCalls() = default;
-  /// Returns true if the access must fault. Called when the engine's address cache has no entry for the access.
+  /// Returns true if the access must fault. The engine calls this function if its address cache has no entry for the
+  /// access.
   virtual bool refuses(std::uint32_t address, unsigned bytes, Access access, Role role) = 0;
-  /// Access rights of the whole page, or a negative number if the rights differ within the page.
+  /// Returns the access rights of the page, or a negative number if the rights differ within the page.
   virtual int rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) = 0;
-  /// True if the current role may fetch a half-word of an instruction at this address.
+  /// Returns true if the current role may fetch an instruction half-word at this address.
   virtual bool may_fetch(std::uint32_t address) const = 0;
-  /// True if the running code has Role::above_faults. The engine calls this function after each possible change of the
-  /// role.
+  /// Returns true if the running code has Role::above_faults. The engine calls this function after each possible change
+  /// of the role.
   virtual bool runs_above_faults() const = 0;
-  /// True if the page contains no instructions, so that stores need no check for translated code.
+  /// Returns true if the page contains no instructions. Stores to the page then need no check for translated code.
   virtual bool takes_plain_stores(std::uint32_t page) const = 0;
-  /// True if all accesses to this address must be aligned to their size.
+  /// Returns true if all accesses to this address must be aligned to their size.
   virtual bool is_device(std::uint32_t address, Role role) const = 0;
-  /// Reports a misaligned access, which then faults.
+  /// Reports a misaligned access. The access then faults.
   virtual void misaligned(std::uint32_t address) = 0;
-  /// True if this load or store instruction requires an aligned address. Called when the engine translates the
-  /// instruction.
+  /// Returns true if this load or store instruction requires an aligned address. The engine calls this function when it
+  /// translates the instruction.
   virtual bool must_be_aligned(std::uint16_t first, std::uint16_t second) const = 0;
-  /// Called at each translation of the instruction at `address` by the engine.
+  /// The engine calls this function when it translates the instruction at `address`.
   virtual void translates(std::uint32_t address) = 0;
 
-  /// While a Use object exists, the engine on this thread calls the functions of its EngineCalls object.
+  /// While a Use object exists, the engine of this thread calls the functions of the given EngineCalls object.
   class Use {
    public:
     explicit Use(EngineCalls& calls);

@@ -1,5 +1,4 @@
-// Numbers of the core exceptions (ARMv7-M, B1.5.2) and vector table positions of the interrupts (RM0090, table "Vector
-// table for STM32F405xx/07xx").
+// Exception numbers (ARMv7-M, B1.5.2) and interrupt positions (RM0090, table "Vector table for STM32F405xx/07xx").
 #pragma once
 
 namespace inkwell::virtual_board {

@@ -1,4 +1,4 @@
-// Exception entry and exception return of the processor, and the cycle counters of exceptions.
+// Exception entry, exception return, and cycle counts of handlers.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -13,11 +13,11 @@ namespace {
 constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
 constexpr unsigned basic_words = 8, float_words = 17;
 constexpr std::uint32_t control_unprivileged = 1, control_spsel = 2, control_fpca = 4;
-// EXC_RETURN (ARMv7-M, table B1-8): bit 4 selects the basic frame, bit 3 thread mode, bit 2 the process stack.
+// Bits of EXC_RETURN (ARMv7-M, table B1-8): basic frame (4), thread mode (3), process stack (2).
 constexpr std::uint32_t exc_return_handler = 0xFFFFFFF1, exc_return_basic = 1u << 4, exc_return_thread = 1u << 3,
                         exc_return_process_stack = 1u << 2;
 
-// Register lists for batched access, because each call of the engine is slow.
+// Registers are accessed in batches, because each engine call is slow.
 int frame_registers[] = {UC_ARM_REG_R0, UC_ARM_REG_R1,   UC_ARM_REG_R2, UC_ARM_REG_R3,     UC_ARM_REG_R12,
                          UC_ARM_REG_LR, UC_ARM_REG_XPSR, UC_ARM_REG_SP, UC_ARM_REG_CONTROL};
 int float_registers[] = {UC_ARM_REG_D0, UC_ARM_REG_D1, UC_ARM_REG_D2, UC_ARM_REG_D3,
@@ -67,7 +67,7 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   void* places[9];
   for (int i = 0; i < 9; ++i) places[i] = &values[i];
   uc_reg_read_batch(engine_, frame_registers, places, 9);
-  // The two lowest bits of stack pointers are always 0 (ARMv7-M, B1.4.1), but Unicorn stores the bits that MSR writes.
+  // The two lowest bits of stack pointers are always 0 (ARMv7-M, B1.4.1), but MSR can set these bits in Unicorn.
   const std::uint32_t stack_pointer = values[7] & ~3u, control = values[8];
   const bool extended = float_context && (control & control_fpca) != 0;
   const bool aligned = (align_stack || extended) && (stack_pointer & 4) != 0;
@@ -89,7 +89,7 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   std::uint32_t words[extended_frame_bytes / 4] = {
       values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u, status};
   // FPU registers are stacked immediately, even if FPCCR selects lazy stacking. Only the contents of the stack memory
-  // reveal the early stacking to firmware. Refused stacking is repeated at the next FPU instruction.
+  // reveal the early stacking to firmware. If an access is refused, the next FPU instruction repeats the stacking.
   if (extended && !float_refusal) read_float_context(&words[basic_words]);
   if (stacks) {
     const std::uint32_t written = 4 * (extended && !float_refusal ? basic_words + float_words : basic_words);
@@ -125,20 +125,20 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
 void Processor::resume_if_then_block(std::uint32_t status) {
   resumed_bytes_ = 0;
   if ((status & xpsr.if_then()) == 0) return;
-  // Lower half of ITSTATE: the lowest set bit marks the end of the if-then block (ARMv7-M, B1.4.2).
+  // In the lower half of ITSTATE, the lowest set bit marks the end of the if-then block (ARMv7-M, B1.4.2).
   const std::uint32_t state = xpsr.if_then_state(status);
   resumed_at_ = program_counter_ & ~1u;
   for (int left = 4 - std::countr_zero(state); left > 0; --left)
     resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
 }
 
-// Every exception calls this function, so it must be fast.
+// This function must be fast, because every exception calls it.
 bool Processor::takes_any_frame(std::uint32_t address, std::uint32_t bytes) const {
   return !machine_.memory_protection.is_on(false) && core_coupled_on_ &&
          machine_.memory.ram_at(address, bytes) != nullptr;
 }
 
-// A frame starts at a word address, and access rights change only at addresses that are multiples of 32.
+// Access rights change only at multiples of 32 bytes.
 std::optional<Outcome> Processor::refusal_of_stack(std::uint32_t address, unsigned words, Access access,
                                                    Role as) const {
   constexpr std::uint32_t granule_bytes = 32;
@@ -149,8 +149,8 @@ std::optional<Outcome> Processor::refusal_of_stack(std::uint32_t address, unsign
   return {};
 }
 
-// Unicorn applies the write restrictions of unprivileged threads also to register writes by the virtual board. In
-// handler mode, writes to CONTROL are allowed.
+// In an unprivileged thread, Unicorn also refuses register writes by the virtual board. In handler mode, Unicorn allows
+// writes to CONTROL.
 void Processor::lift_privilege() {
   const std::uint32_t control = read(UC_ARM_REG_CONTROL);
   write(UC_ARM_REG_IPSR, exception_hard_fault);
@@ -196,7 +196,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   wait(timing_.costs()[next != exception_none ? Cost::exception_tail_chain : Cost::exception_return]);
   end_counting();
 
-  // Tail-chaining: the pending exception reuses the existing frame.
+  // The pending exception reuses the existing frame (tail-chaining).
   if (next != exception_none) return chain_exception(next, vector_table) ? Return::done : Return::invalid;
 
   const std::uint32_t frame = read(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP) & ~3u;
@@ -204,7 +204,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   const bool float_stacked = extended && !unstacked_float_;
   const unsigned words_to_read = float_stacked ? basic_words + float_words : basic_words;
   if (!takes_any_frame(frame, bytes)) {
-    // The frame is read with the rights of the code to which it returns (ARMv7-M, B1.5.8).
+    // The frame is read with the access rights of the interrupted code (ARMv7-M, B1.5.8).
     const Role as{!to_thread || (read(UC_ARM_REG_CONTROL) & control_unprivileged) == 0,
                   nvic.execution_priority(masks()) < 0};
     if (const auto refusal = refusal_of_stack(frame, words_to_read, Access::load, as))

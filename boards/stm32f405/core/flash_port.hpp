@@ -9,8 +9,8 @@ namespace inkwell::virtual_board {
 class FlashPort {
  public:
   virtual ~FlashPort() = default;
-  /// Handles a store to the flash by the processor. Returns the resulting contents, or nothing if the address is
-  /// outside of the flash (bus fault).
+  /// Handles a processor store to the flash and returns the new contents. Returns nothing (bus fault) if the address is
+  /// outside of the flash.
   virtual std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size) = 0;
   /// Makes the core wait for the end of the flash operation.
   virtual void hold_up() = 0;

@@ -1,5 +1,4 @@
-// Hooks for FPU instructions. An FPU instruction raises a fault if the FPU is off, or if the pending lazy stacking is
-// refused.
+// Hooks for FPU instructions. An FPU instruction raises a fault if the FPU is off or lazy stacking fails.
 #include "boards/stm32f405/core/chip_error.hpp"
 #include "boards/stm32f405/core/processor.hpp"
 

@@ -12,8 +12,8 @@
 
 namespace inkwell::virtual_board {
 
-/// Board time in ticks of 8.4 GHz, a multiple of every clock in use. One cycle lasts 50 ticks at 168 MHz, 175 ticks at
-/// 48 MHz, and 525 ticks at 16 MHz.
+/// Board time in ticks of 1 / 8.4 GHz. One cycle lasts 50 ticks at 168 MHz, 175 ticks at 48 MHz, and 525 ticks at 16
+/// MHz.
 using Ticks = std::uint64_t;
 inline constexpr Ticks ticks_per_s = 8'400'000'000;
 constexpr double seconds(Ticks ticks) { return static_cast<double>(ticks) / static_cast<double>(ticks_per_s); }
@@ -34,26 +34,26 @@ class Scheduler {
   virtual void cancel(Id id) = 0;
 };
 
-/// Level-sensitive inputs of the interrupt controller, numbered by their position in the vector table of RM0090.
+/// Level-sensitive inputs of the interrupt controller. Their numbers are the positions in the vector table of RM0090.
 class InterruptController {
  public:
   virtual ~InterruptController() = default;
   virtual void set_level(unsigned position, bool asserted) = 0;
 };
 
-/// A register block on a bus. Offsets are relative to the start of the block; accesses have 1, 2 or 4 bytes.
+/// A register block on a bus. Offsets are relative to the start of the block. An access has 1, 2 or 4 bytes.
 class Peripheral {
  public:
   virtual ~Peripheral() = default;
   virtual std::uint32_t read(std::uint32_t offset, unsigned size) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t value, unsigned size) = 0;
   virtual void reset() = 0;
-  /// Register maps with the names of the reference manual. The arguments are the name and base address of the
+  /// Returns register maps with names from the reference manual. The arguments are the name and base address of the
   /// peripheral.
   virtual std::vector<RegisterMap> register_maps(const std::string&, std::uint32_t) const { return {}; }
 };
 
-/// Logs accesses to unmodeled registers, once per register.
+/// Logs the first access to each unmodeled register.
 class UnmodelledLog {
  public:
   virtual ~UnmodelledLog() = default;
@@ -69,17 +69,17 @@ class ChipState {
   virtual bool has_function(char port, unsigned pin, unsigned alternate_function) const = 0;
 };
 
-/// Signals from a peripheral to the trigger inputs of the timers.
+/// Trigger signals from a peripheral to the timers.
 class TriggerLines {
  public:
   virtual ~TriggerLines() = default;
-  /// Call this when OTG_FS, the USB core, receives a start of frame.
+  /// Call this function when OTG_FS receives a start of frame.
   virtual void usb_start_of_frame() = 0;
 };
 
 enum class PinLevel : std::uint8_t { low, high, floating };
 
-/// Source of the voltage at an analog pin. A source without resistance and capacitance is ideal.
+/// Voltage source at an analog pin. A source with zero resistance and capacitance is ideal.
 struct AnalogSource {
   double resistance_ohm = 0.0;
   double capacitance_F = 0.0;  ///< from the pin to ground
@@ -92,15 +92,15 @@ class Circuit {
   virtual ~Circuit() = default;
   /// Called when the chip drives or releases a pin (GPIO output or timer output). `port` is 'A'..'I'.
   virtual void output_changed(char port, unsigned pin, PinLevel level, Ticks now) = 0;
-  /// Returns the voltage at a pin, in volts. Called at the sampling instant of an ADC.
+  /// Returns the voltage at a pin, in volts. An ADC calls this function at its sampling instant.
   virtual double analog_V(char port, unsigned pin, Ticks now) = 0;
   /// Returns the voltage source at a pin. The source impedance determines the charging time of the sampling capacitor.
   virtual AnalogSource analog_source(char /*port*/, unsigned /*pin*/) const { return {}; }
-  /// Advances the circuit to `now`. Called at least once every 50 us of board time.
+  /// Advances the circuit to `now`. The chip calls this function at least once every 50 us of board time.
   virtual void advance(Ticks now) = 0;
 };
 
-/// Inputs through which the circuit drives the pins. Edges reach GPIO, EXTI and timer inputs.
+/// The circuit drives the pins of the chip through this interface. Edges reach GPIO, EXTI and timer inputs.
 class InputPins {
  public:
   virtual ~InputPins() = default;
@@ -108,7 +108,7 @@ class InputPins {
   /// Drives a pin. If the circuit computes in steps, `since` is the time of the edge within the step. `since` must not
   /// decrease between the calls for one pin.
   virtual void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) = 0;
-  /// Forces the pin to a level that overrides the output of the chip. `floating` removes the force.
+  /// Overrides the chip's output at a pin. `floating` removes the override.
   virtual void hold(char /*port*/, unsigned /*pin*/, PinLevel /*level*/) {}
 };
 

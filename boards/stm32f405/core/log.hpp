@@ -16,13 +16,13 @@ class Log final : public UnmodelledLog {
     if (!sink_) sink_ = [](const std::string& line) { std::fprintf(stderr, "chip: %s\n", line.c_str()); };
   }
   void say(const std::string& line) { sink_(line); }
-  /// Logs each line once. During a register access, the line names the code that accesses the register.
+  /// Logs each line once. During a register access, the function adds the code location to the line.
   void say_once(const std::string& line) {
     if (!said_.insert(line).second) return;
     unmodelled_.push_back(accessing_ && code ? line + ", " + code() : line);
     sink_(unmodelled_.back());
   }
-  /// Marks a register access by the processor for the lifetime of this object.
+  /// During the lifetime of this object, the processor accesses a register.
   class Access {
    public:
     explicit Access(Log& log) : log_(log) { log_.accessing_ = true; }
@@ -41,7 +41,7 @@ class Log final : public UnmodelledLog {
       std::snprintf(text, sizeof text, " + 0x%03X is not modeled: write of 0x%08X ignored", offset, value);
     else
       std::snprintf(text, sizeof text, " + 0x%03X is not modeled: reads 0", offset);
-    // Each register is logged once per direction, so the key excludes the written value.
+    // The key excludes the value, because each register is logged once for reads and once for writes.
     const std::string place = peripheral + (write ? " w " : " r ") + std::to_string(offset);
     if (!places_.insert(place).second) return;
     say_once(peripheral + text);

@@ -20,7 +20,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Stack space reserved for the FPU registers at exception entry, and the state of the interrupted code.
+/// Reserved stack space for FPU registers, and state of the interrupted code.
 struct FloatFrame {
   std::uint32_t address;
   int priority;  ///< execution priority
@@ -67,7 +67,7 @@ struct Machine {
   Ticks last_advance = 0;
   /// Largest interval between two updates of the circuit.
   static constexpr Ticks advance_period = 50 * (ticks_per_s / 1'000'000);
-  /// Maximum age of the digital signals that firmware reads.
+  /// Maximum age of digital inputs when firmware reads the inputs.
   static constexpr Ticks input_age_limit = 5 * (ticks_per_s / 1'000'000);
   void advance_circuit(Ticks at_least) {
     const Ticks now = timeline.now();
@@ -75,8 +75,8 @@ struct Machine {
     last_advance = now;
     circuit.advance(now);
   }
-  /// Maximum delay of DMA writes to memory in fast mode without DMA interrupts. The delay reduces the number of
-  /// processor stops.
+  /// In fast mode, a DMA stream without interrupts may delay its memory writes up to this limit. The delay reduces the
+  /// number of processor stops.
   Ticks transfer_lag() const { return options.mode == Mode::exact ? 0 : 10 * (ticks_per_s / 1'000'000); }
 };
 

@@ -28,13 +28,13 @@ struct MemoryProtectionRegisters {
   } rasr{{"MPU_RASR", 0x10}};
 };
 inline constexpr MemoryProtectionRegisters mpu;
-/// RBAR and RASR have three aliases, so that one STM instruction can set four regions.
+/// RBAR and RASR each have three aliases, so that one STM instruction can set four regions.
 inline constexpr std::uint32_t mpu_base = 0xE000'ED90, mpu_bytes = 0x2C;
 
 class MemoryProtection {
  public:
   void reset() { *this = {}; }
-  /// True if the register at this offset is RBAR or one of its aliases.
+  /// Returns true if the register at this offset is RBAR or one of its aliases.
   static bool is_base(std::uint32_t offset) { return offset >= mpu.rbar && (offset - mpu.rbar) % 8 == 0; }
   std::uint32_t read(std::uint32_t offset) const {
     if (offset == mpu.typer) return mpu.typer.reset_value;
@@ -42,7 +42,7 @@ class MemoryProtection {
     if (offset == mpu.rnr) return region_;
     return is_base(offset) ? bases_[region_] | mpu.rbar.region.with(region_) : attributes_[region_];
   }
-  /// False if the value selects a region that does not exist.
+  /// Returns false if the value selects a region that does not exist.
   static bool names_region(std::uint32_t offset, std::uint32_t value) {
     if (offset == mpu.rnr) return mpu.rnr.region.of(value) < regions;
     return !is_base(offset) || !mpu.rbar.valid.in(value) || mpu.rbar.region.of(value) < regions;
@@ -60,9 +60,9 @@ class MemoryProtection {
       attributes_[region_] = value & writable(mpu.rasr);
     }
   }
-  /// True if all enabled regions have defined behavior. The base must be aligned to the size, and the size must be at
-  /// least 32 bytes. Regions below 256 bytes must not have disabled subregions. The fields AP, TEX, C and B must not
-  /// have reserved values.
+  /// Returns true if all enabled regions have defined behavior. The base of a region must be a multiple of its size.
+  /// The size must be at least 32 bytes. Regions smaller than 256 bytes must not have disabled subregions. The fields
+  /// AP, TEX, C and B must not have reserved values.
   bool is_defined() const {
     for (unsigned i = 0; i < regions; ++i) {
       const std::uint32_t attributes = attributes_[i];
@@ -78,7 +78,8 @@ class MemoryProtection {
     }
     return true;
   }
-  /// True if the unit checks accesses. `above_faults` is true in HardFault, in NMI, and while FAULTMASK is set.
+  /// Returns true if the memory protection unit checks accesses. `above_faults` is true in HardFault, in NMI, and while
+  /// FAULTMASK is set.
   bool is_on(bool above_faults) const {
     return mpu.ctrl.enable.in(control_) && (!above_faults || mpu.ctrl.hfnmiena.in(control_));
   }
@@ -86,8 +87,8 @@ class MemoryProtection {
     if (const auto* attributes = region_at(address)) return region_allows(*attributes, write, fetch, privileged);
     return privileged && mpu.ctrl.privdefena.in(control_);
   }
-  /// True if the region of the address is Device or Strongly-ordered memory; nothing if no region contains the address
-  /// (PM0214, table "TEX, C, B, and S encoding").
+  /// Returns true if the region of the address is Device or Strongly-ordered memory (PM0214, table "TEX, C, B, and S
+  /// encoding"). Returns nothing if no region contains the address.
   std::optional<bool> makes_device(std::uint32_t address) const {
     const auto* attributes = region_at(address);
     if (attributes == nullptr) return {};
@@ -95,7 +96,7 @@ class MemoryProtection {
     const bool cached = mpu.rasr.c.in(*attributes), buffered = mpu.rasr.b.in(*attributes);
     return !cached && (kind == 0 || (kind == 2 && !buffered));
   }
-  /// True if the page may contain a region boundary.
+  /// Returns true if the page may contain a region boundary.
   bool divides(std::uint32_t page, std::uint32_t bytes) const {
     for (unsigned i = 0; i < regions; ++i) {
       if (!mpu.rasr.enable.in(attributes_[i])) continue;
@@ -111,7 +112,8 @@ class MemoryProtection {
   static constexpr unsigned regions = 8, subregions = 8, reserved_rights = 4;
   static constexpr std::uint64_t smallest = 32, smallest_with_subregions = 256;
   std::uint64_t region_bytes(unsigned i) const { return std::uint64_t{2} << mpu.rasr.size.of(attributes_[i]); }
-  /// Attributes of the highest-numbered region that contains the address. This region has priority.
+  /// Returns the attributes of the region at the address. If regions overlap, the region with the highest number has
+  /// priority.
   const std::uint32_t* region_at(std::uint32_t address) const {
     for (unsigned i = regions; i-- > 0;)
       if (covers(i, address)) return &attributes_[i];

@@ -1,4 +1,4 @@
-// Exceptions of the processor: enabled, pending and active states, and priorities (ARMv7-M, B1.5 and B3.4).
+// Exception states (enabled, pending, active) and priorities (ARMv7-M, B1.5 and B3.4).
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Execution priority. Lower values are more urgent; thread mode has the lowest priority.
+/// Execution priority of thread mode. Lower values are more urgent.
 inline constexpr int priority_lowest = 256;
 
 struct Masks {
@@ -78,21 +78,22 @@ class Nvic final : public InterruptController {
 
   /// Group priority of an exception; -1 for HardFault, -2 for NMI.
   int group_priority(unsigned exception) const;
-  /// Current execution priority, including the masks.
+  /// Execution priority with the masks applied.
   int execution_priority(const Masks& masks) const;
   /// Returns the exception to enter now, or exception_none.
   unsigned next(const Masks& masks) const;
-  /// Most urgent pending and enabled exception, regardless of the execution priority, or exception_none.
+  /// Returns the most urgent exception that is pending and enabled, or exception_none. The execution priority has no
+  /// effect.
   unsigned most_urgent() const;
   /// Makes a pending exception active. If the interrupt line stays asserted, the interrupt becomes pending again when
   /// the handler returns.
   void enter(unsigned exception);
   void leave(unsigned exception);
 
-  /// True if a pending state, a priority or an enable bit has changed since the last call.
+  /// Returns true if a pending state, a priority or an enable bit has changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
   bool changed() const { return changed_; }
-  /// True if an exception became pending since the last call (for SEVONPEND).
+  /// Returns true if an exception became pending since the last call (for SEVONPEND).
   bool take_newly_pending() { return std::exchange(newly_pending_, false); }
 
  private:

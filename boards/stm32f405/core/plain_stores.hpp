@@ -24,7 +24,7 @@ class PlainStores {
       for (std::uint32_t part = 0; part < page_bytes; part += smallest_page_bytes) engine.forget_page(page + part);
     }
   }
-  /// True if `address` is in a RAM page without executed instructions.
+  /// Returns true if `address` is in a RAM page without executed instructions.
   bool plain(std::uint32_t address) const {
     if (address - ccm_base < ccm_bytes) return true;  // CCM is not on the instruction bus
     const std::uint32_t offset = address - sram_base;

@@ -21,7 +21,7 @@ uc_err add_hook(uc_engine* engine, int type, Function* function, void* self) {
   return uc_hook_add(engine, &hook, type, reinterpret_cast<void*>(function), self, 1, 0);
 }
 
-// Numbers that Unicorn passes to the interrupt hook of an M-profile processor.
+// Unicorn passes these numbers to the interrupt hook.
 enum : std::uint32_t {
   undefined = 1,
   software_interrupt = 2,
@@ -63,8 +63,8 @@ void Processor::map_memories() {
   const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* place) {
     check(uc_mem_map_ptr(engine_, base, bytes, rights, place), "map a memory");
   };
-  // Except for plain loads, Unicorn searches its memory regions in mapping order at each access. The most frequently
-  // used regions are therefore mapped first.
+  // At each access except plain loads, Unicorn searches its memory regions in mapping order. The most frequently used
+  // regions are therefore mapped first.
   map(sram_base, sram_bytes, UC_PROT_ALL, memory.sram());
   map(ccm_base, ccm_bytes, UC_PROT_ALL, memory.ccm());
   for (const auto& window : windows_.list)
@@ -76,7 +76,7 @@ void Processor::map_memories() {
   map_holes();
 }
 
-// The engine refuses accesses to unmapped addresses without reporting the instruction. All unmapped address ranges are
+// At an access to an unmapped address, the engine does not report the instruction. All remaining address ranges are
 // therefore mapped, so that the engine calls refuses().
 void Processor::map_holes() {
   uc_mem_region* regions = nullptr;
@@ -162,7 +162,7 @@ Outcome Processor::run(std::uint64_t cycles) {
   instruction_end_ = cycles_;
   outcome_ = Outcome::slice_over;
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
-  // Real hardware may still execute some instructions with too few wait states; the model faults immediately.
+  // With too few wait states, the model faults immediately, although real hardware may execute some instructions.
   if (machine_.flash_is_misread && program_counter_ - flash_base < flash_bytes) return Outcome::undefined_instruction;
   uc_err error;
   {
@@ -248,15 +248,14 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   self.last_code_address_ = start;
   self.instructions_ += block.instructions;
   cycles += self.timing_.wait_for_flash(block, cycles, self.register_reader()) + block.cycles;
-  // If the block itself computes the operands, the operands are unknown at block entry, and the mean divide time is
-  // used.
+  // If a block computes the operands of its divide instruction, the mean divide time is used.
   if (block.has_divides)
     for (const auto& divide : block.divides)
       cycles += divide.known_at_entry ? self.divide_wait(divide) : divide_mean(self.timing_.costs());
   self.cycles_ = cycles;
 }
 
-// Plain blocks need no check per instruction. Most blocks are plain, which keeps the code hook fast.
+// Plain blocks need no check at each instruction. Because most blocks are plain, the code hook is fast.
 bool Processor::is_plain(const BlockPrice& block) const {
   const bool needs_flash = !timing_.flash().is_free() && !(block.requests.empty() && block.reads.empty());
   return !needs_flash && block.divides.empty() && !machine_.debugging.attached && !machine_.options.on_instruction;
@@ -278,8 +277,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   if (!self.block_is_plain_) self.wait_in_block(at, starts[half_word]);
 }
 
-// In exact mode, returns false if the processor must stop before the instruction. The reason may be time, an interrupt,
-// a debugger or a division by zero.
+// In exact mode, returns false if the processor must stop before the instruction. The reason for this stop may be time,
+// an interrupt, a debugger or a division by zero.
 [[gnu::noinline]] bool Processor::may_run(std::uint32_t address) {
   const bool due = cycles_ >= stop_cycle_ || (watch_masks_ && masks_open());
   if (due && !in_if_then_block(address)) {
@@ -296,8 +295,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   return true;
 }
 
-// In exact mode, adds the cycles during which an instruction waits for flash or operands. The instruction starts
-// `after_cycles` after the start of its block.
+// In exact mode, adds the wait cycles of the instruction at `address`. The instruction starts `after_cycles` cycles
+// after the start of its block.
 [[gnu::noinline]] void Processor::wait_in_block(std::uint32_t address, std::uint16_t after_cycles) {
   const auto& requests = block_->requests;
   const auto& divides = block_->divides;
@@ -311,7 +310,7 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
 }
 
 bool Processor::if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const {
-  // IT (ARMv7-M, A7.7.38): the lowest set bit of the mask marks the end of the if-then block.
+  // In an IT instruction (ARMv7-M, A7.7.38), the lowest set mask bit marks the end of the if-then block.
   const std::uint16_t instruction = machine_.memory.half_word(if_then);
   const unsigned mask = instruction & 0xFu;
   if ((instruction & 0xFF00u) != 0xBF00u || mask == 0 || address <= if_then) return false;
@@ -347,8 +346,8 @@ void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* po
 
 bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  // Unicorn calls this hook also for WFE and YIELD, with the program counter after the instruction. At an undefined
-  // instruction the program counter contains the address of this instruction.
+  // Unicorn also calls this hook for WFE and YIELD. The program counter then points after the WFE or YIELD. For an
+  // undefined instruction, the program counter points to the instruction.
   const std::uint32_t after = self.read(UC_ARM_REG_PC) & ~1u;
   constexpr std::uint16_t yield = 0xBF10, wait_for_event = 0xBF20;
   constexpr std::uint16_t wide_hint = 0xF3AF, wide_yield = 0x8001, wide_wait_for_event = 0x8002;
@@ -370,7 +369,7 @@ bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   return false;
 }
 
-// Handles a store to the flash. The store starts programming (RM0090, "Flash programming").
+// Starts flash programming at a store to the flash (RM0090, "Flash programming").
 bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address, int size, std::int64_t value,
                                  void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);

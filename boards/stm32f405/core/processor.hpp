@@ -1,4 +1,4 @@
-// Cortex-M4F. Unicorn executes instructions; the Processor class implements exception entry and return (ARMv7-M
+// Cortex-M4F. Unicorn executes the instructions. The Processor class implements exception entry and return (ARMv7-M
 // Architecture Reference Manual, B1.5).
 #pragma once
 
@@ -53,13 +53,14 @@ class Processor final : public ClockUser, private EngineCalls {
 
   /// Loads stack pointer and program counter from the vector table.
   void reset(std::uint32_t vector_table);
-  /// Runs for about `cycles` (fast mode: up to the end of a basic block) or until an event stops the processor.
+  /// Runs for about `cycles` cycles or until an event stops the processor. In fast mode, a run stops at the end of a
+  /// basic block.
   Outcome run(std::uint64_t cycles);
-  /// Ends the current slice before the next instruction (fast mode: block).
+  /// Ends the current slice before the next instruction (fast mode: before the next block).
   void end_slice() { stop_cycle_ = 0; }
   /// If `watch` is true, the slice ends as soon as the masks allow the most urgent pending exception.
   void watch_masks(bool watch) { watch_masks_ = watch; }
-  /// True if the masks have allowed an exception since the last call of this function.
+  /// Returns true if the masks have allowed an exception since the last call of this function.
   bool take_masks_opened() { return std::exchange(masks_opened_, false); }
   /// Sets whether CPACR enables the FPU. While the FPU is off, FPU instructions stop the processor.
   void set_float_unit(bool on) {
@@ -76,7 +77,7 @@ class Processor final : public ClockUser, private EngineCalls {
     traps_misaligned_ = on;
     end_slice();
   }
-  /// Call this when the settings of the memory protection unit have changed. The change takes effect in the next slice.
+  /// Call this function after a change of the MPU settings. The change takes effect in the next slice.
   void rights_changed() {
     rights_changed_ = true;
     end_slice();
@@ -86,12 +87,12 @@ class Processor final : public ClockUser, private EngineCalls {
     flash_is_busy_ = busy;
     rights_changed();
   }
-  /// True if the next instruction is in the busy flash.
+  /// Returns true if the next instruction is in the busy flash.
   bool waits_for_flash() const { return flash_is_busy_ && is_in_flash(program_counter_); }
   static constexpr bool is_in_flash(std::uint32_t address) {
     return address < flash_bytes || address - flash_base < flash_bytes;
   }
-  /// Call this after a change of instructions in memory.
+  /// Call this function after a change of instructions in memory.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
   /// Schedules forget_code() for the start of the next slice. During a slice, forget_code() would make the engine fetch
   /// from the range. The memory protection unit might refuse this fetch.
@@ -99,7 +100,7 @@ class Processor final : public ClockUser, private EngineCalls {
 
   std::uint64_t cycles() const { return cycles_; }
   std::uint64_t instructions() const { return instructions_; }
-  /// Stops the core for `cycles` of HCLK.
+  /// Stops the core for `cycles` HCLK cycles.
   void wait(unsigned cycles) {
     cycles_ += cycles;
     block_start_ += cycles;
@@ -114,13 +115,13 @@ class Processor final : public ClockUser, private EngineCalls {
   Ticks now() const { return anchor_time_ + machine_.clocks.hclk.duration(cycles_ - anchor_cycles_); }
   /// Number of HCLK cycles until `when`, at least 1.
   std::uint64_t cycles_until(Ticks when) const;
-  /// Sets board time to `time` at the present cycle, after sleep or a clock change.
+  /// Sets the board time of the present cycle to `time`. Called after sleep or a clock change.
   void anchor(Ticks time) {
     anchor_time_ = time;
     anchor_cycles_ = cycles_;
   }
 
-  // Cycles before a clock change have the old duration; the rest of the slice is recalculated with the new clock.
+  // Cycles before a clock change have the old duration. The rest of the slice is recalculated with the new clock.
   void before_clock_change() override { anchor(now()); }
   void after_clock_change() override;
 
@@ -162,7 +163,7 @@ class Processor final : public ClockUser, private EngineCalls {
     protected_stack,  ///< the memory protection unit refuses the stack; the stack pointer has still moved
     no_handler,
   };
-  /// Stacks the context if `stacks` is true, and starts the handler.
+  /// Starts the handler. If `stacks` is true, the function first stacks the context.
   Entry enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
                         std::uint32_t vector_table, bool stacks);
   enum class Return : std::uint8_t {
@@ -172,8 +173,8 @@ class Processor final : public ClockUser, private EngineCalls {
     protected_stack,  ///< the memory protection unit refuses the frame; the handler is no longer active
   };
   Return return_from_exception(std::uint32_t vector_table);
-  /// Starts a handler that reuses the stack frame of the previous handler (tail-chaining). Returns false if the vector
-  /// of the new handler is invalid.
+  /// Starts a handler with the stack frame of the previous handler (tail-chaining). Returns false if the vector of the
+  /// new handler is invalid.
   bool chain_exception(unsigned exception, std::uint32_t vector_table);
   bool is_in_thread() const { return current_exception_ == exception_none; }
   /// Returns and clears the float frame of the most recent exception entry.
@@ -181,11 +182,11 @@ class Processor final : public ClockUser, private EngineCalls {
   // float_guards.cpp
   /// FPCCR.LSPACT.
   bool lazy_stacking_due() const;
-  /// Discards the pending lazy stacking; the reserved space is never written.
+  /// Discards the pending lazy stacking. The reserved stack space is not written.
   void drop_lazy_stacking();
   Counters& counters() { return counters_; }
-  /// Called with the exception number when a handler starts or resumes, and with 0 when thread mode resumes. Empty by
-  /// default.
+  /// The processor calls this function with the exception number when a handler starts or resumes. The number is 0 when
+  /// thread mode resumes.
   std::function<void(unsigned exception)> on_exception;
   void clear_counters();
 
@@ -204,9 +205,9 @@ class Processor final : public ClockUser, private EngineCalls {
   bool stop_for_debugger(std::uint32_t address);
   // division.cpp
 
-  /// True if the instruction at `address` divides by zero outside of if-then blocks.
+  /// Returns true if the instruction at `address` divides by zero outside of if-then blocks.
   bool divides_by_zero(std::uint32_t address) const;
-  /// In fast mode, true if a divide instruction of the block has no hook. The hooks are added after the slice.
+  /// In fast mode, returns true if a divide instruction of the block has no hook. The hooks are added after the slice.
   bool has_new_divides(const BlockPrice& block);
   void hook_new_divides();
   static void divide_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
@@ -234,22 +235,22 @@ class Processor final : public ClockUser, private EngineCalls {
   void translates(std::uint32_t address) override { timing_.reread(address); }
   Role role() const;
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, Role role) const;
-  /// True if no access to the frame can be refused.
+  /// Returns true if all accesses to the frame are allowed.
   bool takes_any_frame(std::uint32_t address, std::uint32_t bytes) const;
-  /// Reason why a word of a frame cannot be accessed; nothing if all words can be accessed.
+  /// Returns the reason why a word of a frame cannot be accessed, or nothing.
   std::optional<Outcome> refusal_of_stack(std::uint32_t address, unsigned words, Access access, Role as) const;
-  /// Makes an unprivileged thread privileged, so that the model can write registers that the thread may not write.
+  /// Makes an unprivileged thread privileged. The model can then write protected registers.
   void lift_privilege();
   /// Reads S0 to S15 and FPSCR in the order of the frame.
   void read_float_context(std::uint32_t* words) const;
   /// Performs the pending lazy stacking. Returns the reason of a refused access, or nothing.
   std::optional<Outcome> stack_float_context();
   void take_new_rights();
-  /// In exact mode, true if no instruction of the block waits and no debugger or on_instruction is active.
+  /// In exact mode, returns true if the block needs no check at each instruction.
   bool is_plain(const BlockPrice& block) const;
   bool may_run(std::uint32_t address);
   void wait_in_block(std::uint32_t address, std::uint16_t after_cycles);
-  /// Computes the price of a block, at the first run of the block or after a change of its code.
+  /// Computes the price of a block before its first run and after a change of its code.
   const BlockPrice& price_block(std::uint32_t address, std::uint32_t bytes);
   /// Returns a function that reads R0 to R14 by number.
   auto register_reader() const {
@@ -257,7 +258,7 @@ class Processor final : public ClockUser, private EngineCalls {
       return read(number <= 12 ? UC_ARM_REG_R0 + number : number == 13 ? UC_ARM_REG_SP : UC_ARM_REG_LR);
     };
   }
-  /// Additional cycles of a divide with its present operands, compared with the shortest divide.
+  /// Returns the additional cycles of a divide instruction compared with the shortest divide.
   unsigned divide_wait(const BlockPrice::Divide& divide) const;
   void map_memories();
   void map_holes();
@@ -290,7 +291,7 @@ class Processor final : public ClockUser, private EngineCalls {
   bool stopped_ = false, watch_masks_ = false, masks_opened_ = false, event_register_ = false;
   CycleCounter timing_;
   PeripheralBus register_bus_;
-  // In exact mode, the current block, its start, and the end of its current instruction.
+  // These variables describe the current block in exact mode.
   const BlockPrice* block_ = nullptr;
   std::uint64_t block_start_ = 0, instruction_end_ = 0;
   std::size_t next_request_ = 0, next_divide_ = 0, next_read_ = 0;  ///< within the block
@@ -311,7 +312,7 @@ class Processor final : public ClockUser, private EngineCalls {
   std::vector<std::uint32_t> new_divides_;
   bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
   bool flash_is_busy_ = false;
-  /// Lazy stacking refused at exception entry.
+  /// Lazy stacking that failed at exception entry.
   struct UnstackedFloat {
     std::uint32_t address;  ///< FPCAR
     Role role;              ///< of the interrupted code

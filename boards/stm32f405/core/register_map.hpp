@@ -1,7 +1,7 @@
-// Declarations of registers and their fields by name. The peripheral models of the virtual chip use these declarations.
+// Named registers and fields for the peripheral models of the virtual chip.
 //
-// The maps are independent of the firmware's register maps, so that one mistake cannot affect both maps. The script
-// tools/check/check_registers.py compares both sets of maps with the manufacturer's chip description.
+// These register maps are independent of the firmware's register maps, so that one mistake cannot affect both. The
+// script tools/check/check_registers.py compares all maps with the manufacturer's chip description.
 //
 // CrcRegisters in crc.hpp is a short example. A map contains only registers and fields, so code can access a map as an
 // array of entries. Maps are compile-time constants, so `crc.cr.reset.in(word)` compiles to a mask. Register and field
@@ -17,7 +17,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Access rights of firmware to a field, with the abbreviations of RM0090 ("List of abbreviations for registers").
+/// Access rights of firmware to a field (RM0090, "List of abbreviations for registers").
 enum class Access : std::uint8_t {
   rw,     ///< read and write
   r,      ///< read only
@@ -27,9 +27,9 @@ enum class Access : std::uint8_t {
   rs,     ///< writing 1 sets it, hardware clears it
 };
 
-/// Repetition of a register or field: count, stride (bytes for registers, bits for fields) and number of the first
-/// repetition. The number replaces the `#` in the name; numbers from 'A' on are letters. A field without repetition has
-/// the number of its register.
+/// Repetition of a register or field. `stride` is in bytes for registers and in bits for fields. The repetitions have
+/// numbers from `first` on. The number of a repetition replaces the `#` in the name. Numbers from 'A' on are letters. A
+/// field without repetition has the number of its register.
 struct Repeat {
   unsigned count = 1, stride = 0, first = 0;
 };
@@ -70,7 +70,7 @@ struct Field : MapEntry {
   constexpr std::uint32_t of(std::uint32_t word, unsigned index = 0) const {
     return word >> position(index) & maximum();
   }
-  /// True if the field is not 0 in a register value.
+  /// Returns true if the field is not 0 in a register value.
   constexpr bool in(std::uint32_t word, unsigned index = 0) const { return of(word, index) != 0; }
   /// Value shifted to the position of the field.
   constexpr std::uint32_t with(std::uint32_t value, unsigned index = 0) const {
@@ -84,7 +84,7 @@ struct Field : MapEntry {
   }
 };
 
-/// A register converts to its offset.
+/// A Register object converts to its offset.
 struct Register : MapEntry {
   consteval Register(const char* text, unsigned offset, std::uint32_t value_after_reset = 0, Repeat repeat = {})
       : MapEntry{named(text),
@@ -104,13 +104,13 @@ struct Register : MapEntry {
   constexpr unsigned index(std::uint32_t offset) const { return (offset - place) / stride; }
 };
 
-/// Registers and fields of a map or of one register, in the order of declaration.
+/// Returns the entries of a map or of one register in the order of declaration.
 template <class Map>
 constexpr auto entries_of(const Map& map) {
   return std::bit_cast<std::array<MapEntry, sizeof(Map) / sizeof(MapEntry)>>(map);
 }
 
-/// Combined mask of the register's fields that have this access right.
+/// Returns the combined mask of the fields with this access right.
 template <class OneRegister>
 consteval std::uint32_t bits_of(const OneRegister& one_register, Access access) {
   std::uint32_t bits = 0;
@@ -126,7 +126,7 @@ consteval std::uint32_t writable(const OneRegister& one_register) {
   return bits_of(one_register, Access::rw);
 }
 
-/// Registers of one peripheral, for tools that compare register maps.
+/// Register map of one peripheral for comparison tools.
 struct RegisterMap {
   std::string name;
   std::uint32_t base;

@@ -1,12 +1,12 @@
 // Rules for firmware. The virtual chip tolerates violations of these rules, but real hardware does not.
 //
-// Each rule is a row of the table. A model that detects a violation reports the rule and, if necessary, the affected
-// peripheral or pin.
+// Each row of INKWELL_CHIP_RULES is one rule. A model that detects a violation reports the rule and, if necessary, the
+// affected peripheral or pin.
 #pragma once
 
 // To add a rule, first add a row to INKWELL_CHIP_RULES.
-// In the model, call violate(Rule::NAME) at the violation and emulate the effect on silicon.
-// In tests/boards/stm32f405, add a number to firmware/rules.cc and to violations_test.cpp.
+// In the model, call violate(Rule::NAME) when firmware breaks the rule, and emulate the effect on real hardware.
+// In tests/boards/stm32f405, add a test to violations_test.cpp with its number in firmware/rules.cc.
 // The test firmware must break only the new rule.
 //
 // `virtual-board --strict` exits at the first broken rule. System tests and `inkwell experiment` use `--strict`.
@@ -251,7 +251,7 @@ class RuleKeeper {
   virtual void violate(Rule rule, const std::string& where = {}) = 0;
 };
 
-/// Chip interfaces for peripherals that are defined outside of this library.
+/// Chip interfaces for external peripheral models.
 struct ChipConnections {
   Scheduler& scheduler;
   InterruptController& interrupts;

@@ -5,7 +5,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Bytes of the ITM stimulus ports.
+/// Size of the ITM stimulus ports.
 constexpr std::uint32_t stimulus_bytes = 0x400;
 
 constexpr std::uint32_t first_handler_priority = scb_base + scb.shpr,
@@ -200,7 +200,7 @@ std::uint32_t SystemControl::read(std::uint32_t address, unsigned size) {
 }
 
 void SystemControl::write(std::uint32_t address, std::uint32_t value, unsigned size) {
-  // Registers with byte fields, such as priorities, accept narrow writes.
+  // Registers with byte fields, such as priorities, accept byte and half-word writes.
   if (address - nvic_base < nvic_bytes) return machine_.nvic.write(address - nvic_base, value, size);
   if (is_priority(address)) {
     for (unsigned i = 0; i < size; ++i)
@@ -273,8 +273,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
   if (address - mpu_base < mpu_bytes) {
     if (!MemoryProtection::names_region(address - mpu_base, value)) machine_.violations.violate(Rule::region_number);
     machine_.memory_protection.write(address - mpu_base, value);
-    // Firmware writes the base address of a region before its size, so the region is checked only when the size is
-    // written.
+    // The region is checked only when its size is written, because firmware writes the base address first.
     if (!MemoryProtection::is_base(address - mpu_base) && !machine_.memory_protection.is_defined())
       machine_.violations.violate(Rule::region_undefined);
     return processor_.rights_changed();

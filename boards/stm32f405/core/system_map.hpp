@@ -1,6 +1,5 @@
-// Registers of the Cortex-M4 core (ARMv7-M Architecture Reference Manual, B3.2 to B3.5, C1.6 to C1.8), and of the
-// debug configuration of the chip (RM0090, "Debug support"). Register offsets are relative to the base address that is
-// declared after each map.
+// Registers of the Cortex-M4 core (ARMv7-M Architecture Reference Manual, B3.2 to B3.5, C1.6 to C1.8) and of the DBGMCU
+// (RM0090, "Debug support"). Register offsets are relative to the base address after each map.
 #pragma once
 
 #include "boards/stm32f405/core/register_map.hpp"

@@ -61,7 +61,7 @@ void SysTick::write(std::uint32_t offset, std::uint32_t value) {
     case stk.ctrl: {
       held_ = current();
       control_ = (control_ & stk.ctrl.countflag.mask()) | (value & writable(stk.ctrl));
-      // A counter at 0 first loads the reload value, which takes one count.
+      // A counter at 0 needs one count to load the reload value.
       start(held_ != 0 ? held_ : reload_ + 1);
       break;
     }

@@ -1,9 +1,9 @@
 // Schedules the parts of the chip in board time.
 //
-// Each timed part (timer, converter, watchdog) sets two times. `due` is the time of its next internal step. `wake` is
-// the time at which the step affects the processor (interrupt, reset, memory). The processor runs up to the earliest
-// `wake`. Steps before the earliest `wake` are delayed until a part is accessed. The delayed steps are then executed in
-// order of time. PWM edges therefore do not stop the processor.
+// Each timed part (timer, converter, watchdog) sets two times. `due` is the time of the part's next internal step.
+// `wake` is the time at which the step affects the processor (interrupt, reset, memory). The processor runs up to the
+// earliest `wake`. Steps before the earliest `wake` are delayed until a part is accessed. The delayed steps are then
+// executed in order of time. PWM edges therefore do not stop the processor.
 #pragma once
 
 #include <algorithm>
@@ -71,7 +71,7 @@ class Timeline {
     wake_moved_forward_ = false;
     return next_wake_;
   }
-  /// True if a part has set a `wake` time that is earlier than the result of the last next_wake().
+  /// Returns true if a part has set a `wake` time that is earlier than the result of the last next_wake().
   bool wake_moved_forward() const { return wake_moved_forward_; }
 
  private:

@@ -1,4 +1,4 @@
-// The stacked program status register: APSR, EPSR and IPSR combined (ARMv7-M, B1.4.2).
+// The stacked program status register xPSR combines APSR, EPSR and IPSR (ARMv7-M, B1.4.2).
 #pragma once
 
 #include "boards/stm32f405/core/register_map.hpp"
