@@ -149,7 +149,7 @@ Injection checked(const protocol::InjectionRequest& request, const board::Facts&
 Injection parse_injection(std::string_view text, const board::Facts& board) {
   protocol::InjectionRequest parts;
   std::string_view rest = text;
-  // Splits the text at the last `mark`, because a plus sign also separates the names of two wires.
+  // Splits the text at the last `mark`, because earlier plus signs separate the names of wires.
   const auto cut = [&](char mark, std::string_view what) -> std::optional<double> {
     const auto position = rest.rfind(mark);
     if (position == std::string_view::npos) return std::nullopt;

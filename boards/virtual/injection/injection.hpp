@@ -16,7 +16,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Thrown for an invalid request. what() is a sentence that states the valid requests.
+/// Thrown for an invalid request.
 class InvalidInjection : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -36,14 +36,14 @@ struct Injection {
 
 /// Checks a request. The wires of the request must exist on `board`. Throws InvalidInjection.
 Injection checked(const protocol::InjectionRequest& request, const board::Facts& board);
-/// Parses NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2, with times in seconds. Throws
-/// InvalidInjection.
+/// Parses NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2. The times are in seconds.
+/// Throws InvalidInjection.
 Injection parse_injection(std::string_view text, const board::Facts& board);
-/// Parses one injection per line; text after a # is a comment. Throws InvalidInjection with the number of the invalid
+/// Parses one injection per line and ignores the text after a #. Throws InvalidInjection with the number of the invalid
 /// line.
 std::vector<Injection> parse_injections(std::string_view script, const board::Facts& board);
 
-/// Table of all injections for --help, with one line per injection.
+/// Returns the help text with one line per injection.
 std::string explain_injections();
 
 }  // namespace inkwell::virtual_board

@@ -11,7 +11,7 @@ namespace {
 
 using protocol::InjectedFault;
 
-/// If two faults cannot be active together at one position, returns the same fault for both faults.
+/// Returns the same value for faults that exclude each other at one position.
 InjectedFault kind(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::wire_low:
@@ -28,7 +28,7 @@ InjectedFault kind(InjectedFault fault) {
   }
 }
 
-/// True if the fault is momentary. A second momentary fault adds to the first fault.
+/// Returns true if the fault is momentary.
 bool is_momentary(InjectedFault fault) {
   return fault == InjectedFault::encoder_slip || fault == InjectedFault::program_astray ||
          fault == InjectedFault::ram_bit || fault == InjectedFault::flash_bit;
@@ -38,14 +38,13 @@ bool is_within(std::uint32_t address, std::uint32_t base, std::uint32_t bytes) {
   return address >= base && address - base < bytes;
 }
 
-/// Size of the image in flash. All flash words after the image are erased.
+/// Returns the size of the flash content without the erased words at the end.
 std::uint32_t programmed_bytes(const Chip& chip) {
   std::uint32_t bytes = flash_bytes;
   while (bytes > 4 && chip.memory_word(flash_base + bytes - 4) == 0xFFFF'FFFF) bytes -= 4;
   return bytes;
 }
 
-/// add() has checked the address. If the check in flip_bit() fails, the fault is not listed.
 void flip_bit(Chip& chip, const Injection& injection) {
   if (!chip.flip_bit(*injection.address, static_cast<unsigned>(injection.amount)))
     throw InvalidInjection(fmt::format("there is no memory at 0x{:08X} for a bit flip", *injection.address));
@@ -106,7 +105,7 @@ void Injector::put_in(unsigned number, Injection injection) {
   if (!is_momentary(injection.fault))
     std::erase_if(active_, [&](const Active& active) {
       if (kind(active.injection.fault) != kind(injection.fault) || active.injection.of != injection.of) return false;
-      // If only the amount changes, the fault is not cleared first, so that no fault-free time occurs.
+      // A fault whose amount changes is not cleared first, so that no fault-free time occurs.
       if (active.injection.fault != injection.fault) put(active.injection, false);
       return true;
     });

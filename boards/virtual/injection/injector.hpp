@@ -25,7 +25,6 @@ class Injector {
     std::function<void(bool in)> plug;                 ///< the USB cable
     std::function<void(bool polls)> set_host_polling;  ///< see VirtualUsb
   };
-  /// Active fault or past momentary fault.
   struct Active {
     unsigned number;      ///< see add()
     Injection injection;  ///< with the address and bit chosen from the seed
@@ -33,35 +32,33 @@ class Injector {
     std::optional<Ticks> until;
   };
 
-  /// Fault with a start time in the future.
   struct Planned {
     unsigned number;
     Injection injection;
     Ticks at;
   };
 
-  /// Largest total number of active and planned faults.
+  /// Largest number of active and planned faults together.
   static constexpr std::size_t faults_maximum = 10'000;
 
   Injector(Victims victims, std::uint64_t seed) : victims_(std::move(victims)), random_(seed) {}
 
-  /// Applies the fault immediately, or later if `after_s` is positive (see next()). Replaces a fault of the same kind
-  /// at the same position. Throws InvalidInjection if no memory exists at the address, or if `faults_maximum` is
-  /// reached. Do not call this function inside Chip::run_until(). Returns a unique number for the fault.
+  /// Applies the fault after `after_s` (see next()). Replaces a fault of the same kind at the same position. Throws
+  /// InvalidInjection if no memory exists at the address, or if `faults_maximum` is reached. Do not call this function
+  /// inside Chip::run_until(). Returns a unique number for the fault.
   unsigned add(const Injection& injection);
-  /// Time at which the next fault starts or is cleared. The board runs up to this time, then calls carry_out().
+  /// Returns the time of the next start or end of a fault. At this time the board calls carry_out().
   Ticks next() const;
   void carry_out();
 
-  /// Clears active faults and cancels planned faults of this kind at position `of` (at all positions if `of` is empty).
-  /// Returns the number of cleared and canceled faults. The effect of a momentary fault remains, but the fault is no
-  /// longer listed.
+  /// Clears active faults and cancels planned faults of this kind at position `of`. An empty `of` means all positions.
+  /// Returns the number of cleared and canceled faults. The effect of a momentary fault remains.
   unsigned heal(protocol::InjectedFault fault, const std::string& of);
   void heal_all();
 
   /// Active faults in the order of their start times.
   const std::vector<Active>& active() const { return active_; }
-  /// Planned faults in the order in which they were requested.
+  /// Planned faults in the order of their requests.
   const std::vector<Planned>& planned() const { return planned_; }
 
  private:
