@@ -1,9 +1,9 @@
 // Rigid-body model of the arm: kinematics and the terms of the equation of motion.
 //
 // The model uses joint coordinates and link coordinates. The encoders measure the joint coordinates q = (q1, q2, q3).
-// On a serial arm q3 is relative to link 2; on a parallelogram q3 is absolute. The link coordinates are u = (q1, a, b),
-// where a and b are the angles of links 2 and 3 above the horizontal, in the arm's plane. In link coordinates, serial
-// arms and parallelogram arms have the same energies.
+// On a serial arm q3 is relative to link 2; on a parallelogram q3 is absolute. The link coordinates are u = (q1, a, b).
+// The angles of links 2 and 3 above the horizontal are a and b. In link coordinates, serial arms and parallelogram arms
+// have the same energies.
 //
 //   Kinetic energy:    (M11(a, b) q1'^2 + J2 a'^2 + J3 b'^2 + 2 H cos(a - b) a' b') / 2.
 //   Waist inertia:     M11(a, b) = I + J2 cos^2 a + J3 cos^2 b + 2 H cos a cos b.
@@ -25,7 +25,7 @@ class ArmDynamics {
  public:
   explicit ArmDynamics(const arms::Description& arm);
 
-  /// Terms of M(q) q'' + coriolis(q, q') + gravity(q) = torque, and the Jacobian of the probe.
+  /// Terms of the equation M(q) q'' + coriolis(q, q') + gravity(q) = torque.
   struct Terms {
     Matrix3 mass_matrix;  ///< kg m^2, including the rotors
     Vector3 coriolis_Nm;  ///< centrifugal and Coriolis torques
@@ -40,8 +40,7 @@ class ArmDynamics {
   Matrix3 jacobian_m(const Vector3& joints_rad) const { return jacobian_m(links(joints_rad)); }
   double kinetic_energy_J(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
   double potential_energy_J(const Vector3& joints_rad) const;
-  /// The stops of the elbow limit this angle. It is joint 3 of a serial arm, or joint 3 minus joint 2 of a
-  /// parallelogram arm.
+  /// Elbow angle: joint 3 of a serial arm, or joint 3 minus joint 2 of a parallelogram arm.
   double elbow_rad(const Vector3& joints_rad) const {
     return parallelogram_ ? joints_rad[2] - joints_rad[1] : joints_rad[2];
   }

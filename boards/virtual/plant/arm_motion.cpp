@@ -68,8 +68,8 @@ void ArmMotion::step(double duration_s, const Vector3& torque_Nm, std::span<cons
 }
 
 // Solves the friction with projected Gauss-Seidel rounds over the joints. The friction impulse stops a joint within the
-// limit of the friction cone. The impulses of the previous step are the initial guess. Because of this guess, resting
-// joints and sliding joints converge in one or two rounds.
+// limit of the friction cone. The impulses of the previous step are the initial guess, so one or two rounds are usually
+// sufficient.
 Vector3 ArmMotion::slide(const Matrix3& inverse_mass, const Vector3& free, double duration_s) {
   constexpr int rounds_maximum = 40;
   constexpr double still_rad_s = 1e-13;

@@ -16,7 +16,7 @@ class ArmMotion {
   /// Advances by one step with the motor torques at the joints and the couplings at the probe. The integrator is
   /// position Verlet. Position Verlet evaluates forces in the middle of the step to avoid energy drift. Damping is
   /// implicit. The Coulomb friction impulse stops a joint within the limit of the friction cone (Moreau's time
-  /// stepping). Therefore the arm stops completely and does not creep while the hand holds the stylus in one position.
+  /// stepping). Therefore a resting arm does not creep.
   void step(double duration_s, const Vector3& torque_Nm, std::span<const Coupling> couplings);
 
   const Vector3& joints_rad() const { return joints_rad_; }

@@ -1,4 +1,4 @@
-// Encoder faults with intact wires: a stuck disc, lost counts, or a slipping disc.
+// Encoder faults: a stuck disc, lost counts and a slipping disc.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class EncoderFault {
   void lose(double share) { lost_share_ = share; }
   void slip(double counts) { to_slip_ += counts; }
 
-  /// True if the encoder produces no edge for the next count.
+  /// Returns true if the encoder omits the edge of the next count.
   bool swallows() {
     return is_stuck_ || (lost_share_ > 0.0 && std::generate_canonical<double, 32>(random_) < lost_share_);
   }

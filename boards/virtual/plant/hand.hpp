@@ -36,8 +36,8 @@ class Hand {
   bool holds() const { return holds_; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void release();
-  /// Moves the target along the waypoints. The motion starts at `now` at the present target position. If the hand does
-  /// not hold the stylus, the hand first grips it at `probe_m` with the previous stiffness and damping.
+  /// Moves the target along the waypoints. The motion starts at `now` at the present target position. A hand that does
+  /// not hold the stylus first grips the stylus at `probe_m`.
   void follow(const std::vector<Waypoint>& waypoints, const Vector3& probe_m, Ticks now);
 
   double stiffness_N_per_m() const { return stiffness_N_per_m_; }
@@ -66,7 +66,7 @@ class Inkwell {
 
   bool seated() const { return seated_; }
   const Vector3& position_m() const { return position_m_; }
-  /// Seats the stylus if it is in the funnel. Returns true if the stylus is seated.
+  /// Seats a stylus in the funnel. Returns true if the stylus is seated.
   bool capture(const Vector3& probe_m);
   void eject() { seated_ = false; }
   /// Advances by one step. The funnel guides the stylus into the socket. A pull stronger than the socket's grip removes

@@ -1,5 +1,4 @@
-// The retriggerable monostable between the chip and the enable input of the bridges: 74LVC1G123 with input A grounded
-// (data sheet, function table).
+// The retriggerable monostable 74LVC1G123 with input A grounded (data sheet, function table).
 #pragma once
 
 #include <algorithm>
@@ -17,7 +16,7 @@ class Monostable {
   /// B input. Each rising edge of B restarts the output pulse if CLR is high.
   void drive_trigger(bool high, Ticks now) { drive(trigger_high_, high, now); }
 
-  /// End of the output pulse (Q high) if no further edge arrives.
+  /// Returns the end of the output pulse (Q high).
   Ticks ends_at() const { return ends_at_; }
 
  private:

@@ -18,8 +18,8 @@ void MotorDrive::configure(const MotorConstants& motor) {
   time_constant_s_ = motor.inductance_H / resistance_ohm_;
   inverse_resistance_ = 1.0 / resistance_ohm_;
   amplifier_time_constant_s_ = amplifier_s_;
-  // With equal time constants of amplifier and winding, the closed form would be singular. A ratio close to 1 is
-  // therefore set to 0.999.
+  // The closed form is singular if amplifier and winding have equal time constants. A ratio close to 1 is therefore set
+  // to 0.999.
   double ratio = amplifier_time_constant_s_ / time_constant_s_;
   if (std::abs(1.0 - ratio) < 1e-3) {
     ratio = 1.0 - 1e-3;
@@ -85,8 +85,8 @@ MotorDrive::Charges MotorDrive::take_charges() {
   return taken;
 }
 
-// Returns the voltage source that drives the motor current. The conducting diode of a floating leg clamps the leg to a
-// rail. A positive current flows out of leg A and into leg B.
+// The conducting diode of a floating leg clamps the leg to a rail. A positive current flows out of leg A and into leg
+// B.
 MotorDrive::Branch MotorDrive::branch() const {
   if (!conducts_) return {back_emf_V_, 0.0, false, false};
   const Leg a = legs_[0].acting();
@@ -102,8 +102,7 @@ MotorDrive::Branch MotorDrive::branch() const {
   };
   if (!floating || current_A_ > 0.0) return with_sign(true);
   if (current_A_ < 0.0) return with_sign(false);
-  // A current starts from zero only if the bridge voltage, including the diode voltages, exceeds the back EMF in the
-  // direction of the current.
+  // A current starts from zero only if the bridge voltage minus the diode voltages exceeds the back EMF.
   if (const Branch forward = with_sign(true); forward.voltage_V > back_emf_V_) return forward;
   if (const Branch backward = with_sign(false); backward.voltage_V < back_emf_V_) return backward;
   return {back_emf_V_, 0.0, false, false};

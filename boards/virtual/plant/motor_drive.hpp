@@ -13,7 +13,6 @@ namespace inkwell::virtual_board {
 /// Command to the gate driver of one leg. If a leg is `floating`, its diodes conduct the current.
 enum class Leg : std::uint8_t { low, high, floating };
 
-/// State of a faulty leg, independent of its command.
 enum class LegFault : std::uint8_t { none, high, low, open };
 
 struct MotorConstants {
@@ -32,21 +31,21 @@ class MotorDrive {
   /// Replaces the winding of the motor at `now`; std::nullopt is an open winding.
   void set_winding(const std::optional<MotorConstants>& motor, Ticks now);
   void set_leg_fault(unsigned leg, LegFault fault, Ticks now);
-  /// Sets an additional delay between the end of the dead time and the conduction of the leg's switches.
+  /// Sets a delay that is added to the dead time of the leg.
   void set_leg_delay(unsigned leg, Ticks delay);
 
   /// Integrates the current up to `now`. The argument `now` never decreases.
   void advance(Ticks now);
 
-  /// Supply voltage and back-EMF apply from the time of the last advance() on.
+  /// The values apply from the time of the last advance() on.
   void set_bus_V(double volts) { bus_V_ = volts; }
   void set_back_emf_V(double volts) { back_emf_V_ = volts; }
 
   double current_A() const { return current_A_; }
-  /// Output of the shunt amplifier, converted to a current, without offset, gain error and noise.
+  /// Returns the low-pass filtered current without offset, gain error and noise.
   double amplifier_A() const { return amplifier_A_; }
 
-  /// Integrals of the motor current and of the supply current of the bridge since the last call.
+  /// Integrals of the motor current and the supply current since the last call.
   struct Charges {
     double motor_As;
     double supply_As;
@@ -63,7 +62,7 @@ class MotorDrive {
     Leg acting() const;
   };
   void configure(const MotorConstants& motor);
-  /// Equivalent voltage source of the bridge, valid until the current changes sign or a leg switches.
+  /// Equivalent voltage source of the bridge. The values change when the current changes sign or a leg switches.
   struct Branch {
     double voltage_V;     ///< from terminal + to terminal -, without the leg resistance
     double supply_share;  ///< ratio of supply current to motor current: -1, 0 or 1

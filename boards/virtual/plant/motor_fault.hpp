@@ -4,7 +4,7 @@
 namespace inkwell::virtual_board {
 
 struct MotorFault {
-  // Temperature coefficients of copper and of the ferrite magnets in a small motor.
+  // Temperature coefficients of copper and ferrite magnets.
   static constexpr double resistance_per_K = 0.00393, torque_constant_per_K = -0.002;
 
   bool open = false;

@@ -10,9 +10,9 @@
 
 namespace inkwell::virtual_board {
 
-/// Measures the force F that satisfies J^T F = tau. The mean over one control period removes the current ripple, which
-/// a hand cannot perceive. The mean over one millisecond removes short pushes, which a hand hardly perceives. A step is
-/// excluded if no leg is driven high, because the motors only brake in this step.
+/// Measures the force F that satisfies J^T F = tau. The mean over one control period removes the current ripple. The
+/// mean over one millisecond removes short pushes. Steps in which no leg is driven high are excluded, because the
+/// motors only brake.
 class MotorForceMeter {
  public:
   static constexpr unsigned steps_per_period = 3, steps_per_ms = 60;
@@ -22,8 +22,8 @@ class MotorForceMeter {
   double peak_N() const { return peak_N_; }
   double peak_over_ms_N() const { return peak_over_ms_N_; }
 
-  /// Adds one step. `is_driven` is true if a leg was driven high within the last period. A step with a nearly singular
-  /// Jacobian is skipped, because the torques do not define a force.
+  /// Adds one step. `is_driven` is true if a leg was driven high within the last period. With a nearly singular
+  /// Jacobian the torques do not define a force, so the step is skipped.
   void step(const Vector3& torque_Nm, const Matrix3& jacobian_m, bool is_driven) {
     constexpr double singular_m3 = 1e-5;  // an Omni has 2e-3 in the middle of its reach
     const bool is_singular = std::abs(jacobian_m.determinant()) < singular_m3;

@@ -50,15 +50,15 @@ std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) 
 
 constexpr double reference_V = static_cast<double>(board::adc_reference_V);
 
-/// Source resistance of the supply voltage divider at the pin.
+/// Resistance of the supply voltage divider at the pin.
 double divider_ohm(const board::Facts& board) {
   return static_cast<double>(board.supply_upper_ohm / board.supply_divider());
 }
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
-/// Level of a contact to ground. The pull-up in the chip provides the high level.
+/// The pull-up in the chip provides the high level.
 PinLevel contact(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
-/// Level of the open-drain fault wire of the bridges. A pull-up on the board provides the high level.
+/// The fault wire is open-drain, and a pull-up on the board provides the high level.
 PinLevel fault_wire(bool fault) { return fault ? PinLevel::low : PinLevel::high; }
 
 }  // namespace
@@ -291,7 +291,7 @@ void Plant::step() {
 }
 
 void Plant::finish_docking() {
-  // The inkwell captures the stylus only at the end of the hand's path, even if the path crosses the funnel earlier.
+  // The inkwell captures the stylus only at the end of the hand's path.
   if (carrier_.is_moving(next_step_)) return;
   if (inkwell_.capture(probe_m_)) carrier_.release();
 }
@@ -304,8 +304,7 @@ void Plant::show(char port, unsigned pin, PinLevel level, PinLevel& shown) {
   pins_->drive(port, pin, level);
 }
 
-/// Drives the pin for the bridge enable level immediately, because the chip measures the pulse duration of the
-/// monostable.
+/// The bridge enable pin is driven immediately, because the chip measures the pulse duration of the monostable.
 void Plant::show_hold() {
   if (pins_ != nullptr) show(board_.bridge_hold.port, board_.bridge_hold.number, level_of(bridges_enabled_), shown_[6]);
 }

@@ -2,9 +2,8 @@
 // the board facts.
 //
 // Motor currents are exact between the switching edges of the bridges. The arm, the supply and the back-EMF advance in
-// fixed steps of
-// 16.7 us (a third of a control period) with the mean of the motor currents. The plant changes the chip's input pins
-// only inside advance(), so the chip may call output_changed() and analog_V() at any time.
+// fixed steps of 16.7 us, a third of a control period. The plant changes the chip's input pins only inside advance(),
+// so the chip may call output_changed() and analog_V() at any time.
 #pragma once
 
 #include <array>
@@ -43,7 +42,7 @@ class Plant final : public Circuit {
   /// `board` must outlive the plant.
   Plant(const arms::Description& arm, const board::Facts& board, const PlantOptions& options = {});
 
-  /// Connects the chip. From this call on, the plant drives the chip's inputs, initially with their present levels.
+  /// Connects the chip. From this call on, the plant drives the chip's inputs.
   void connect(InputPins& pins);
 
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
@@ -57,7 +56,7 @@ class Plant final : public Circuit {
   void set_bridge_fault(bool fault);
   /// Sets whether the USB cable supplies VBUS.
   void set_usb_supply(bool present);
-  /// Turns the gimbal to these angles (yaw, pitch, roll).
+  /// Sets the gimbal angles yaw, pitch and roll.
   void turn_gimbal(const Vector3& gimbal_rad) { gimbal_rad_ = gimbal_rad; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void let_go();
@@ -80,15 +79,13 @@ class Plant final : public Circuit {
   void set_leg_delay(unsigned motor, unsigned leg, double delay_s) {
     motors_[motor].set_leg_delay(leg, ticks(delay_s));
   }
-  /// Makes the bridge supply deliver this voltage instead of the voltage from set_supply_V(); std::nullopt clears the
-  /// fault.
+  /// Makes the bridge supply deliver this voltage. std::nullopt restores the voltage of set_supply_V().
   void fail_supply_at_V(std::optional<double> volts) { supply_.fail_at_V(volts); }
-  /// Makes the supply voltage oscillate with this amplitude at 100 Hz; 0 clears the fault.
+  /// Makes the supply voltage oscillate at 100 Hz. An amplitude of 0 clears the fault.
   void swing_supply_by_V(double amplitude_V) { supply_.swing_by_V(amplitude_V); }
-  /// Sets the supply voltage of the amplifiers and potentiometers, initially 3.3 V.
+  /// Sets the supply voltage of the amplifiers and potentiometers. The initial voltage is 3.3 V.
   void set_analog_supply_V(double volts) { analog_supply_V_ = volts; }
 
-  /// Starts the measurement of the force on the hand and of the motor force.
   void start_meters() {
     hand_meter_.start(probe_m_, now_);
     motor_force_meter_.start();

@@ -16,18 +16,18 @@ class QuadratureEncoder {
     bool operator==(const Levels&) const = default;
   };
 
-  /// `counts_per_rad` is negative if the encoder counts down while its joint turns forward.
+  /// A negative `counts_per_rad` means that the encoder counts down when its joint turns forward.
   explicit QuadratureEncoder(double counts_per_rad, double joint_rad, std::uint64_t seed = 1)
       : fault(seed),
         counts_per_rad_(counts_per_rad),
         shown_at_(joint_rad * counts_per_rad),
         reached_(count_at(joint_rad)) {}
 
-  /// Disc count at this joint angle. The disc count is 0 at joint angle 0.
+  /// Returns the disc count, which is 0 at joint angle 0.
   std::int64_t count_at(double joint_rad) const {
     return static_cast<std::int64_t>(std::floor(joint_rad * counts_per_rad_));
   }
-  /// Count that the outputs represent: the disc count minus the lost counts.
+  /// Disc count minus the lost counts.
   std::int64_t shown() const { return reached_ - lost_; }
 
   /// Both outputs at `count`. A leads B while counting up (RM0090, "Encoder interface mode").
@@ -36,8 +36,8 @@ class QuadratureEncoder {
     return {phase == 1 || phase == 2, phase >= 2};
   }
 
-  /// Moves to the count at `joint_rad` and calls `edge(levels, share)` for each passed count. `share` is the fraction
-  /// of the motion up to this count.
+  /// Moves to the count at `joint_rad` and calls `edge(levels, share)` for each passed count. `share` is the completed
+  /// fraction of the motion.
   template <class Edge>
   void follow(double joint_rad, Edge&& edge) {
     slipped_ += fault.slipped_counts();

@@ -12,7 +12,7 @@ struct ShuntFault {
   Output output = Output::follows;
   double frozen_V = 0.0;
 
-  /// Measured current if the amplifier output is not frozen.
+  /// Returns the measured current of an amplifier that is not frozen.
   double read_A(double current_A) const { return gain * current_A + offset_A; }
 };
 

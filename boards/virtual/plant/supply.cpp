@@ -31,7 +31,7 @@ void Supply::advance(double duration_s, double charge_As) {
   };
   swinging_s_ += duration_s;
   const double fed_V = next_V(source_conductance_S_);
-  // Without the oscillation fault, the source does not conduct while the bus voltage exceeds the source voltage.
+  // A source without oscillation does not conduct while the bus voltage exceeds the source voltage.
   bus_V_ = fed_V <= source_V() || swing_V_ != 0.0 ? fed_V : std::max(source_V(), next_V(0.0));
   // The diodes of the bridges prevent a negative bus voltage.
   bus_V_ = std::max(bus_V_, 0.0);

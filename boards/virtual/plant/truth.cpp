@@ -5,7 +5,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Value of one quantity. The compiler warns if a quantity has no case.
+/// Value of one quantity.
 double value_of(protocol::SimulatedQuantity quantity, const Truth& truth) {
   using enum protocol::SimulatedQuantity;
   switch (quantity) {

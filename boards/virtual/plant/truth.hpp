@@ -1,4 +1,4 @@
-// True physical quantities of the simulation, and a trace of these quantities.
+// True physical quantities of the simulation.
 #pragma once
 
 #include <array>
@@ -34,8 +34,7 @@ struct Truth {
 using TracedValues = std::array<double, protocol::simulated_quantity_count>;
 TracedValues traced_values(const Truth& truth);
 
-/// Rows of true quantities, one row per control period. When the trace is full, the oldest rows are dropped and
-/// counted.
+/// The trace has one row per control period. A full trace drops and counts its oldest rows.
 class Trace {
  public:
   struct Row {

@@ -13,8 +13,8 @@ const PinName* Wires::neighbour(PinName wire) const {
   return nullptr;
 }
 
-// Returns the level at the receiving end of a wire. Two touching wires are low if either wire is driven low. An
-// undriven wire has the level of the touching wire.
+// Returns the level at the receiving end of a wire. Two touching wires are low if one of the wires is driven low. An
+// undriven wire has the level of the wire that it touches.
 PinLevel Wires::arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen) {
   const State& s = state(wire);
   switch (s.fault) {
@@ -50,7 +50,7 @@ void Wires::set(PinName wire, WireFault fault) {
   s.frozen_V = s.newest_V;
   s.since = now_;
   s.fault = fault;
-  // A short circuit also overrides the output of the chip.
+  // A short circuit overrides the output of the chip.
   const bool is_shorted = fault == WireFault::low || fault == WireFault::high;
   if (chip_ != nullptr)
     chip_->hold(wire.port, wire.pin,
@@ -106,8 +106,7 @@ double Wires::analog_V(char port, unsigned pin, Ticks now) {
   return read_V;
 }
 
-// For a broken wire, returns a source without impedance, because the voltage already includes the time constant of the
-// broken wire.
+// A broken wire is a source without impedance, because its voltage already includes the time constant.
 AnalogSource Wires::analog_source(char port, unsigned pin) const {
   return states_[index({port, pin})].fault == WireFault::intact ? circuit_.analog_source(port, pin) : AnalogSource{};
 }
