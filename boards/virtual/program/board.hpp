@@ -29,7 +29,7 @@ class Board {
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
-  /// Runs until board time `when`, or until the firmware exits or locks up.
+  /// Runs until board time `when`, an exit of the firmware, or a lock-up.
   Stop run_until(Ticks when);
   /// Plugs in or unplugs the USB cable. The cable supplies VBUS to the OTG_FS core and to the sense pin.
   void plug(bool in);
@@ -45,18 +45,18 @@ class Board {
     std::uint64_t number = 0;  ///< from 0 since the last reset
     Ticks began = 0;
   };
-  /// The newest control period. The number of the control period equals the count in the firmware, unless the firmware
-  /// has missed a control interrupt.
+  /// The newest control period. The number equals the firmware's period count, unless the firmware has missed a control
+  /// interrupt.
   const ControlPeriod& control_period() const { return control_period_; }
   const Profile& profile() const { return profile_; }
-  /// Returns the name of the function at `address`. The name is empty if the ELF file has no function at this address.
+  /// Returns the name of the function at `address`, or an empty name.
   std::string name_of_code(std::uint32_t address) const { return symbols_.name(address); }
   Truth truth() { return plant_.truth(chip_.now()); }
   bool locked_up() const { return locked_up_; }
 
  private:
   void console(std::uint8_t byte);
-  /// Saves the flash to the flash file when the firmware has finished a flash operation.
+  /// Saves the flash file after each flash operation.
   void follow_flash();
   Stop run_chip_until(Ticks when);
   std::function<void(std::uint32_t address, std::uint64_t cycles)> observer(const Options& options);

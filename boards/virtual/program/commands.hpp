@@ -9,11 +9,10 @@ namespace inkwell::virtual_board {
 
 class Simulation;
 
-/// Executes one command line of a client and returns the reply: {"ok":true,...} or {"ok":false,"error":"sentence"}. For
-/// the command `run`, the simulation sends the reply after the duration of the run.
+/// Executes one command line of a client and returns the reply: {"ok":true,...} or {"ok":false,"error":"sentence"}. The
+/// reply to `run` follows at the end of the run.
 nlohmann::json carry_out(const std::string& line, Simulation& simulation);
-/// Executes a command line while board time waits for a program in the middle of a USB frame. Commands that change the
-/// board are refused.
+/// Executes a command line in the middle of a USB frame, and refuses commands that change the board.
 nlohmann::json carry_out_within_frame(const std::string& line, Simulation& simulation);
 
 }  // namespace inkwell::virtual_board

@@ -21,7 +21,7 @@ bool refuse(int socket, std::string_view reason) {
   return false;
 }
 
-/// True if the line may be a command. Lines of other protocols, such as browser requests, must not be executed.
+/// Returns true if the line may be a command. A browser request must not be executed.
 bool may_be_command(std::string_view line) {
   const auto first = line.find_first_not_of(" \t\r");
   return first == std::string_view::npos || line[first] == '{';

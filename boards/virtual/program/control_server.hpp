@@ -1,5 +1,4 @@
-// Server for the control socket. The server passes JSON lines from several clients to the simulation thread, one by
-// one.
+// Server for the control socket. The server passes JSON lines from clients to the simulation thread.
 #pragma once
 
 #include <chrono>
@@ -37,10 +36,9 @@ class ControlServer {
   ControlServer& operator=(const ControlServer&) = delete;
 
   const local::SocketAddress& address() const { return listener_.address(); }
-  /// Returns the oldest request. If no request is pending, waits for a request until `give_up` or until wake() is
-  /// called.
+  /// Returns the oldest request. Waits for a request until the time `give_up` or a call of wake().
   std::optional<ControlRequest> take(std::chrono::steady_clock::time_point give_up);
-  /// Ends the present wait of take(), or the next wait. May be called from any thread.
+  /// Ends the present or the next wait of take(). May be called from any thread.
   void wake();
 
  private:

@@ -1,4 +1,4 @@
-// Stores the chip's flash in a file, so that a later program run can load the flash contents.
+// Stores the contents of the chip's flash in a file.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,10 @@
 
 namespace inkwell::virtual_board {
 
-/// A flash file contains only the bytes of the flash, in address order. The file is locked against use by other
-/// programs.
+/// A flash file contains only the bytes of the flash, in address order. A file lock prevents use by another program.
 class FlashFile {
  public:
-  /// Copies the contents of the file to `flash`. If the file does not exist, `flash` does not change, and save()
-  /// creates the file.
+  /// Copies the contents of the file to `flash`. If the file does not exist, `flash` does not change.
   /// @throws std::runtime_error with an error sentence if the file is not a flash image of this chip, is in use, or is
   /// unreadable.
   FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash);

@@ -71,7 +71,7 @@ json heal(const json& request, Simulation& simulation) {
   try {
     const protocol::InjectionRequest wanted = injection_request(request);
     const auto fault = protocol::find_injection(wanted.fault);
-    // If the request names no position, the fault is cleared at every position.
+    // A request without a position clears the fault at every position.
     const std::string of = fault && wanted.of.empty() ? wanted.of : checked(wanted, simulation.board().facts()).of;
     const unsigned healed = injector.heal(fault.value(), of);
     if (healed == 0)

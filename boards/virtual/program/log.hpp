@@ -1,4 +1,4 @@
-// The log of the program: lines on stderr, with board time if available.
+// The log of the program on stderr.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Command line options as text, before they are checked.
+/// Unchecked text of the command line options.
 struct Given {
   Options options;
   std::string usbip = "0", control = "0", gdb;
@@ -192,7 +192,7 @@ std::string footer() {
          explain_commands();
 }
 
-/// Returns the board name in the firmware of a flash file. The name is empty if the file contains no firmware of this
+/// Returns the board name of the firmware in a flash file, or an empty name if the file contains no firmware of this
 /// project.
 std::string board_in_flash(const std::filesystem::path& file) {
   std::ifstream flash(file, std::ios::binary);

@@ -51,8 +51,8 @@ struct Options {
                                                  ///< chip
 };
 
-/// Options, or the exit code if the program must exit. The exit code is 0 after --help. After an invalid option, an
-/// error is printed on stderr and the exit code is 2.
+/// Returns the options or an exit code. The exit code is 0 after --help and 2 after an invalid option. Prints errors on
+/// stderr.
 struct CommandLine {
   std::optional<Options> options;
   int exit_code = 0;

@@ -17,10 +17,10 @@ struct PortOption {
   static PortOption of(const std::string& text);
 };
 
-/// Returns the text for a port in the line "ready ...": the port number, or "unix:PATH".
+/// Returns the port number or "unix:PATH" for the line "ready ...".
 std::string announced(const local::SocketAddress& address);
 
-/// Folder of the private sockets. The folder is created when it is first used.
+/// Folder of the private sockets. The first use creates the folder.
 class PrivateSockets {
  public:
   /// `name` is the file name of a private socket. Throws std::runtime_error with an error sentence.

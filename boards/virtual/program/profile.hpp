@@ -1,4 +1,4 @@
-// Cycles of each instruction in the longest interrupt.
+// Profile of the longest interrupt.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace inkwell::virtual_board {
 /// before and after the preemption count as separate runs.
 class Profile {
  public:
-  /// Call this before each instruction with the active exception (0: thread mode), the address, and the cycle count.
+  /// Call this before each instruction. `exception` is 0 in thread mode.
   void instruction(unsigned exception, std::uint32_t address, std::uint64_t cycles);
 
-  /// Writes the hexadecimal address and the cycles of each instruction of the longest run, one line per instruction.
-  /// Throws std::runtime_error if the file cannot be written.
+  /// Writes one line per instruction of the longest run: the hexadecimal address and the cycles. Throws
+  /// std::runtime_error if the file cannot be written.
   void write(const std::filesystem::path& file) const;
 
  private:

@@ -12,8 +12,7 @@ using nlohmann::json;
 
 namespace {
 
-/// Largest number of trace rows in a reply, which limits the memory of the reply. The next reply contains the remaining
-/// rows.
+/// This number of trace rows limits the memory of a reply. The next reply contains the remaining rows.
 constexpr std::size_t rows_of_answer_maximum = 100'000;
 constexpr double reach_m = 2.0;  // beyond the reach of any arm that a description allows
 
@@ -129,7 +128,7 @@ Request read_request(std::string_view line) {
   if (values.is_discarded() || !values.is_object())
     throw Refused("a command is one JSON object in one line, such as {\"command\":\"status\"}");
   const json& name = at(values, "command", "the name of a command, such as \"status\"");
-  // The error message quotes only strings, because the stack use for a nested list grows with the depth of the list.
+  // The error message does not quote lists, because printing a deeply nested list can overflow the stack.
   if (!name.is_string()) throw Refused("\"command\" must be the name of a command, such as \"status\"");
   const auto table = command_table();
   const auto found = std::ranges::find(table, name.get_ref<const std::string&>(), &CommandInfo::name);

@@ -1,5 +1,4 @@
-// Parses requests of control socket clients, and performs all checks that need no board. Each error message states the
-// expected input.
+// Parses and checks requests of control socket clients. Each error message states the expected input.
 #pragma once
 
 #include <array>
@@ -60,7 +59,7 @@ struct CommandInfo {
   bool is_for_any_time = false;  ///< allowed in the middle of a bus frame
 };
 std::span<const CommandInfo> command_table();
-/// Help text with one line per command and its keys.
+/// Returns the help text with one line per command.
 std::string explain_commands();
 
 struct Request {
@@ -72,7 +71,7 @@ Request read_request(std::string_view line);
 
 bool truth_value(const nlohmann::json& request, const char* key);
 double run_time_s(const nlohmann::json& request);
-/// Number of the flash operation during which the power fails. std::nullopt means an immediate power failure.
+/// Returns the number of a flash operation. The power fails during this operation, or immediately for std::nullopt.
 std::optional<std::uint64_t> flash_operation(const nlohmann::json& request);
 double supply_voltage_V(const nlohmann::json& request);
 double glitch_time_s(const nlohmann::json& request);
@@ -94,7 +93,7 @@ HandRequest hand_request(const nlohmann::json& request);
 std::vector<Waypoint> hand_path_request(const nlohmann::json& request);
 std::array<bool, 2> pressed_buttons(const nlohmann::json& request);
 PinName pin_of(const nlohmann::json& request);
-/// Level to drive at the pin; std::nullopt if the pin is only read.
+/// Returns the level to drive at the pin, or std::nullopt for a read request.
 std::optional<PinLevel> pin_drive(const nlohmann::json& request);
 protocol::InjectionRequest injection_request(const nlohmann::json& request);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t digits_of_word = 8, digits_of_all = 24;
 
-/// Last word of the unique identifier. Each source of identifiers has a different last word.
+/// Last word of the unique identifier. The last word differs for each source of identifiers.
 enum Lot : std::uint32_t {
   of_seed = 0x3932'3539,
   of_flash = 0x3932'3546,

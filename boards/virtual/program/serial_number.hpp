@@ -1,6 +1,6 @@
 // The chip's unique identifier (RM0090, "Unique device ID register"). The firmware derives the USB serial number from
-// this identifier. Simultaneous boards have different identifiers. A board that is restarted with the same options has
-// the same identifier.
+// this identifier. Simultaneous boards have different identifiers. A restart with the same options does not change the
+// identifier.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ UniqueId unique_id_of_seed(std::uint64_t seed);
 UniqueId unique_id_of_flash(const std::filesystem::path& file);
 UniqueId unique_id_of_socket(const std::filesystem::path& file);
 UniqueId unique_id_of_port(std::uint16_t usbip_port);
-/// Fallback if no identifier can be derived from a seed, file, socket or port.
+/// Fallback for boards without seed, file, socket and port.
 UniqueId unique_id_of_process();
 
 }  // namespace inkwell::virtual_board

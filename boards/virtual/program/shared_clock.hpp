@@ -1,4 +1,4 @@
-// Common clock of simultaneous virtual boards. Their board times differ by at most one millisecond.
+// Common clock of simultaneous virtual boards. The board times of a group differ by at most one millisecond.
 #pragma once
 
 #include <array>
@@ -22,21 +22,20 @@ class SharedClock {
   SharedClock(const SharedClock&) = delete;
   SharedClock& operator=(const SharedClock&) = delete;
 
-  /// Publishes the board time, in milliseconds since this board joined the group.
+  /// Publishes the milliseconds since this board joined the group.
   void note(std::uint64_t milliseconds);
-  /// Returns true if all other boards have reached this board's time, so that the next millisecond of this board may
-  /// start.
+  /// Returns true if all other boards have reached this board's time.
   bool lets_pass();
 
  private:
-  /// Content of a slot: 0 if the slot is free, otherwise 1 plus the group time of the board in milliseconds.
+  /// A slot contains 0 if it is free, and otherwise 1 plus the board's group time in milliseconds.
   using Slot = std::atomic<std::uint64_t>;
   static_assert(Slot::is_always_lock_free, "processes share it");
   using Slots = std::array<Slot, boards_maximum>;
 
   void join();
   bool is_taken(std::size_t slot) const;
-  /// Largest value of all slots; 1 if all slots are free.
+  /// Returns the largest value of all slots, or 1 if all slots are free.
   std::uint64_t farthest() const;
 
   int file_ = -1;

@@ -79,7 +79,6 @@ void Simulation::list_violations() const {
 }
 
 bool Simulation::time_passes() const {
-  // While GDB is attached, only GDB stops and starts board time.
   if (gdb_.attached()) return !gdb_.halted();
   if (run_) return true;
   switch (passing_) {
@@ -118,7 +117,7 @@ void Simulation::serve(ControlRequest request) {
   request.reply.set_value(std::move(reply));
 }
 
-/// While board time waits in the middle of a frame for a program, executes the pending commands.
+/// Executes the pending commands in the middle of a USB frame.
 void Simulation::answer_within_frame() {
   while (auto request = server_.take(Clock::time_point::min()))
     request->reply.set_value(carry_out_within_frame(request->line, *this));
@@ -159,8 +158,8 @@ void Simulation::start_pacing() {
   pace_board_ = board_.chip().now();
 }
 
-// Sleeps while board time is ahead of real time. A large lag of board time is counted but not made up, because the user
-// would otherwise see the arm in fast motion.
+// Sleeps while board time is ahead of real time. A large lag of board time is dropped, because a user must not see the
+// arm in fast motion.
 void Simulation::pace() {
   const double board_s = seconds(board_.chip().now() - pace_board_);
   const double wall_s = std::chrono::duration<double>(Clock::now() - pace_wall_).count();

@@ -1,9 +1,9 @@
-// Controls board time, which runs freely, in real time, or for the duration of a `run` command.
+// Starts, paces and stops board time.
 //
 // Board time passes in slices of one millisecond. Requests of local programs, such as USB transfers and control socket
 // commands, take effect only between two slices. The wall-clock duration of a slice therefore has no effect. The
-// results are reproducible for a program that waits for each answer before its next request. While board time waits for
-// a stopped program in the middle of a slice, commands that do not change the board are still executed.
+// results are reproducible if each program waits for each answer before its next request. A wait for a stopped program
+// can interrupt a slice. During this wait, only commands that do not change the board are executed.
 #pragma once
 
 #include <atomic>
@@ -38,7 +38,7 @@ class Simulation {
   const Options& options() const { return options_; }
   bool paused() const { return passing_ != Passing::freely; }
   bool stands_by() const { return passing_ == Passing::during_control_transfers; }
-  /// Dropped lag of board time. Lag is dropped if the computer is too slow.
+  /// Returns the dropped lag of board time behind real time.
   double time_dropped_s() const { return time_dropped_s_; }
   void pause();
   /// Stops board time except during USB control transfers.
@@ -46,8 +46,8 @@ class Simulation {
   void resume();
   void quit() { quit_ = true; }
   bool is_running_for() const { return run_.has_value(); }
-  /// Runs for `duration_s`, then replies to the present request. Afterward board time is paused, or on standby if board
-  /// time was on standby before this call.
+  /// Runs for `duration_s`, then replies to the present request. Afterward board time is paused or in its previous
+  /// standby.
   void run_for(double duration_s);
 
  private:
@@ -58,7 +58,7 @@ class Simulation {
     std::promise<nlohmann::json> reply;
   };
   bool time_passes() const;
-  /// True if another board with the same shared clock has not reached this board's time.
+  /// Returns true if another board of the shared clock has not reached this board's time.
   bool waits_for_others();
   void serve_debugger();
   bool ends_by_violation() const;

@@ -96,7 +96,7 @@ void StreamServer::receive_from(int client) {
   on_arrival_();
 }
 
-/// Returns false if the server closes, or if `client` has disconnected and another client waits.
+/// Returns false if the server closes or another client replaces the disconnected `client`.
 bool StreamServer::wait_for_room(int client) {
   std::unique_lock lock(mutex_);
   while (!closing_ && arrived_.bytes.size() >= unread_maximum) {

@@ -1,4 +1,4 @@
-// Server for GDB or for a UART terminal, with one client at a time.
+// Server for GDB or a UART terminal. The server accepts one client at a time.
 #pragma once
 
 #include <condition_variable>
@@ -14,11 +14,11 @@
 
 namespace inkwell::virtual_board {
 
-/// Check of a client's first bytes. Returns true if the bytes may belong to the expected protocol.
+/// Returns true if a client's first bytes may belong to the expected protocol.
 using FirstBytes = bool (*)(std::string_view bytes);
-/// True if the first byte is Ctrl-C or may start an acknowledgment or a GDB packet.
+/// Returns true if the first byte is Ctrl-C or may start an acknowledgment or a GDB packet.
 bool may_be_gdb(std::string_view bytes);
-/// False if the first bytes belong to a browser request (HTTP or TLS).
+/// Returns false if the first bytes belong to a browser request (HTTP or TLS).
 bool may_be_terminal(std::string_view bytes);
 
 class StreamServer final : public ByteStream {

@@ -35,7 +35,7 @@ TerminalStream::TerminalStream(const std::filesystem::path& path, std::function<
   if (input_ < 0 || ::grantpt(input_) != 0 || ::unlockpt(input_) != 0 ||
       ::ptsname_r(input_, name.data(), name.size()) != 0)
     throw std::runtime_error(fmt::format("--uart: a pseudo-terminal cannot be created: {}.", std::strerror(errno)));
-  // The terminal side stays open, so that writes succeed while no other program has opened the terminal.
+  // The open terminal side makes writes succeed while no other program uses the terminal.
   other_side_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios raw{};
   ::tcgetattr(other_side_, &raw);

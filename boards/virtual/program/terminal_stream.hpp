@@ -15,7 +15,7 @@ class TerminalStream final : public ByteStream {
  public:
   /// Uses standard input and output. `on_arrival`: see StreamServer.
   explicit TerminalStream(std::function<void()> on_arrival);
-  /// Creates a pseudo-terminal and, for the lifetime of the object, a symbolic link `path` to the pseudo-terminal.
+  /// Creates a pseudo-terminal and a symbolic link `path` to it. The destructor removes the link.
   /// @throws std::runtime_error with an error sentence if the pseudo-terminal cannot be created.
   TerminalStream(const std::filesystem::path& path, std::function<void()> on_arrival);
   ~TerminalStream() override;

@@ -13,10 +13,9 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Largest number of queued bytes before the firmware enables the receiver.
+/// Largest queue length in bytes before the firmware enables the receiver.
 constexpr std::size_t kept_maximum = 4096;
-/// Largest number of queued bytes in the UART model. Between two calls of serve(), the fastest UART receives fewer
-/// bytes than this limit.
+/// Largest queue length in the UART model in bytes. The fastest UART receives fewer bytes between two calls of serve().
 constexpr std::size_t line_maximum = 4096;
 
 bool may_be_anything(std::string_view) { return true; }
@@ -84,7 +83,7 @@ UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, Private
 void UartLinks::serve() {
   for (UartLink& link : links_) {
     if (link.arrived.size() < kept_maximum) link.arrived += link.stream->take().bytes;
-    // A client cannot detect when the firmware enables the receiver, so earlier bytes are queued.
+    // Bytes are queued until the firmware enables the receiver.
     if (chip_.usart_listens(link.number)) {
       const std::size_t room = line_maximum - std::min(chip_.usart_waiting(link.number), line_maximum);
       const std::size_t count = std::min(link.arrived.size(), room);
