@@ -102,7 +102,8 @@ MotorDrive::Branch MotorDrive::branch() const {
   };
   if (!floating || current_A_ > 0.0) return with_sign(true);
   if (current_A_ < 0.0) return with_sign(false);
-  // A current starts from zero only if the bridge voltage minus the diode voltages exceeds the back EMF.
+  // A current starts from zero only if the bridge voltage, reduced by the diode voltages, exceeds the back EMF in the
+  // direction of the current.
   if (const Branch forward = with_sign(true); forward.voltage_V > back_emf_V_) return forward;
   if (const Branch backward = with_sign(false); backward.voltage_V < back_emf_V_) return backward;
   return {back_emf_V_, 0.0, false, false};

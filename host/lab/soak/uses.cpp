@@ -26,7 +26,7 @@ using protocol::Signal;
 constexpr double step_s = 0.01;
 // These are mean speeds. The peak speed of a minimum-jerk motion is 1.875 times the mean speed.
 constexpr double slow_m_per_s = 0.15, fast_m_per_s = 0.8;
-/// The probe can move faster than the hand. The lowest speed limit of a phase is 2 m/s.
+/// The probe can move faster than the hand. The lowest random speed limit is 2 m/s.
 constexpr double fastest_way_m_per_s = 1.0;
 
 double distance_m(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
