@@ -28,9 +28,9 @@ void BackgroundCheck::run() {
 void BackgroundCheck::report(protocol::Conditions found) { host_link.found_in_main_loop.store(found); }
 
 protocol::Conditions BackgroundCheck::supply_faults() {
-  const bool swings = ripples(supply_ripple_, analog_inputs.supply_counts(), completed_periods.load());
+  const bool swings = supply_ripple_.ripples(analog_inputs.supply_counts(), completed_periods.load());
   return condition(Fault::logic_supply_low, logic_supply.is_low()) |
-         condition(Fault::analog_supply, is_off(analog_supply_, analog_inputs.reference_counts())) |
+         condition(Fault::analog_supply, analog_supply_.is_off(analog_inputs.reference_counts())) |
          condition(Fault::supply_ripple, swings);
 }
 
@@ -38,8 +38,7 @@ protocol::Conditions BackgroundCheck::encoder_faults() {
   const std::uint32_t now_periods = completed_periods.load();
   const auto timer_counts = encoders.read();
   bool dead = false;
-  for (std::size_t i = 0; i < timer_counts.size(); ++i)
-    dead |= is_dead(encoder_wires_[i], timer_counts[i], now_periods);
+  for (std::size_t i = 0; i < timer_counts.size(); ++i) dead |= encoder_wires_[i].is_dead(timer_counts[i], now_periods);
   return condition(Fault::encoder_wire, dead) | condition(Fault::encoder_implausible, an_encoder_is_stuck());
 }
 
@@ -55,7 +54,7 @@ bool BackgroundCheck::an_encoder_is_stuck() {
   for (std::size_t i = 0; i < stuck_encoders_.size(); ++i) {
     const auto counts = static_cast<std::int32_t>(newest.signals[encoders_counts[i]]);
     stuck |=
-        is_stuck(stuck_encoders_[i], counts, newest.signals[currents_A[i]], newest.summary.periods, held, moving_A[i]);
+        stuck_encoders_[i].is_stuck(counts, newest.signals[currents_A[i]], newest.summary.periods, held, moving_A[i]);
   }
   return stuck;
 }
@@ -65,8 +64,8 @@ protocol::Conditions BackgroundCheck::bridge_faults() {
   const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.heartbeat_is_high(),
                                  bridges.hold_is_high(), bridges.a_leg_is_high()};
   // If a control interrupt occurred during the reads, the levels are ignored.
-  if (completed_periods.load() == periods_before) update_wire_check(bridge_wire_, pins);
-  return condition(Fault::bridge_wire, is_shorted(bridge_wire_));
+  if (completed_periods.load() == periods_before) bridge_wire_.update(pins);
+  return condition(Fault::bridge_wire, bridge_wire_.is_shorted());
 }
 
 }  // namespace inkwell::application

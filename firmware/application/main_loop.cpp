@@ -55,8 +55,8 @@ void follow_self_test(const BackgroundCheck& background_check) {
   const std::uint16_t reference_counts = analog_inputs.reference_counts();
   test.follow(controller, host_link.parameters.settings(),
               {.gimbal_ratio = analog_inputs.gimbal_ratio(),
-               .analog_supply_V = analog_supply_V(supply, reference_counts),
-               .analog_supply_is_right = is_right(supply, reference_counts)});
+               .analog_supply_V = supply.analog_supply_V(reference_counts),
+               .analog_supply_is_right = supply.is_right(reference_counts)});
   if (const auto wire = test.wanted_wire()) test.note_wire(floats(*wire));
 }
 

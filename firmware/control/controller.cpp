@@ -94,7 +94,7 @@ void Controller::pass_self_test(const MeasuredMotors& measured) {
 }
 
 void Controller::drive(const ForceTarget& target, const Settings& settings) {
-  if (set_target(program_, target, settings.program_force)) ++late_force_reports_;
+  if (program_.set_target(target, settings.program_force)) ++late_force_reports_;
 }
 
 void Controller::replace_shapes(const Shapes& shapes) {
@@ -106,12 +106,12 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   // The bridges are off, so the current readings are the sensor offsets.
   if (!offsets_.measured()) {
     if (offsets_.periods == 0)
-      for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
-    measure_offsets(offsets_, samples.current_A);
+      for (std::size_t i = 0; i < 3; ++i) speeds_[i].start(samples.encoder_counts[i], periods_);
+    offsets_.measure(samples.current_A);
     over_current_for_A_ = {};
   }
-  debounce(switches_, samples.switches, turn_);
-  filter_supply(supply_, samples.supply_V);
+  switches_.debounce(samples.switches, turn_);
+  supply_.filter(samples.supply_V);
   jump_bits_ = jumps(encoder_counts_, samples.encoder_counts, settings.encoders.jump_counts);
   encoder_counts_ = samples.encoder_counts;
   const auto take = [&](std::size_t i) { return replace(current_A_[i], samples.current_A[i] - offsets_.offset_A[i]); };
@@ -121,10 +121,10 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   const float ratio = samples.gimbal_ratio[turn_];
   const GimbalCurve& curve = settings.gimbal[turn_];
   probe_.gimbal_rad[turn_] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
-  update_heat(heat_, turn_, current_A_[turn_], settings.heat);
+  heat_.update(turn_, current_A_[turn_], settings.heat);
   // While the force is on, a new inkwell reference would shift the walls relative to the hand.
   if (!force_is_on())
-    update_reference(reference_, encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
+    reference_.update(encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
 }
 
 /// This check uses the speed and the current errors of the previous period.
@@ -140,7 +140,7 @@ void Controller::check_for_jumps(const Triple& change_A, const Settings& setting
 void Controller::find_pose(const Settings& settings) {
   constexpr auto periods_per_s = static_cast<float>(protocol::servo_rate_Hz);
   for (std::size_t i = 0; i < 3; ++i) {
-    update(speeds_[i], encoder_counts_[i], periods_, i == turn_);
+    speeds_[i].update(encoder_counts_[i], periods_, i == turn_);
     joint_speed_rad_per_s_[i] = speeds_[i].counts_per_period * settings.encoders.rad_per_count[i] * periods_per_s;
     counts_since_inkwell_[i] = encoder_counts_[i] - reference_.counts[i];
   }
@@ -154,7 +154,7 @@ void Controller::find_pose(const Settings& settings) {
 
 void Controller::render_force(const Settings& settings) {
   probe_.contact = find_contact(probe_.position_m, settings.box);
-  advance(program_, settings.program_force);
+  program_.advance(settings.program_force);
   const bool shapes_changed = shapes_.age();
   const bool world_changed = std::exchange(world_changed_, false) || shapes_changed;
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
@@ -190,7 +190,7 @@ void Controller::render_force(const Settings& settings) {
     transition_ =
         start_transition(bounded(rendered_N_, force_limit_N_).force_N - rendered_N, settings.recovery_N_per_period);
   rendered_N_ = rendered_N + transition_.force_N();
-  advance(transition_);
+  transition_.advance();
   force_gain_ = supervisor_.state == State::landing ? std::max(force_gain_ - settings.landing_per_period, 0.0f)
                                                     : std::min(force_gain_ + settings.ramp_per_period, 1.0f);
   // A lowered force limit applies immediately.
@@ -201,10 +201,10 @@ void Controller::render_force(const Settings& settings) {
 }
 
 void Controller::limit_and_apply_force(Force requested, const Settings& settings) {
-  update_energy(reserve_, force_.force_N, probe_.position_m, settings.energy);
+  reserve_.update(force_.force_N, probe_.position_m, settings.energy);
   const float power_W = dot(requested.force_N, probe_.velocity_m_per_s);
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
-  if (power_W > 0.0f && (is_low(reserve_, settings.energy) || is_near(speed_squared_m2_per_s2, settings.speed)))
+  if (power_W > 0.0f && (reserve_.is_low(settings.energy) || is_near(speed_squared_m2_per_s2, settings.speed)))
       [[unlikely]]
     requested = reduce_driving_part(requested, power_W, settings);
   const Vector3 change_N = requested.force_N - force_.force_N;
@@ -219,7 +219,7 @@ void Controller::limit_and_apply_force(Force requested, const Settings& settings
 }
 
 Force Controller::reduce_driving_part(const Force& requested, float power_W, const Settings& settings) {
-  const float for_energy = driving_reduction(reserve_, settings.energy);
+  const float for_energy = reserve_.driving_reduction(settings.energy);
   const float for_speed = driving_reduction(dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s), settings.speed);
   limits_ |= bit(Limit::energy, for_energy > 0.0f);
   limits_ |= bit(Limit::speed, for_speed > 0.0f);
@@ -251,16 +251,17 @@ void Controller::check_motors(const Settings& settings) {
   // While the force is on, the resistance is updated only when the heat is updated.
   if (!force_is_on() || heat_.readings == 0) update_resistance(settings);
   if (!force_is_on()) {
-    reset(motor_check_);
+    motor_check_.reset();
     check_idle_currents();
     return;
   }
-  if (!update_motor_check(motor_check_, current_A_, joint_speed_rad_per_s_, resistances_,
-                          settings.motor_model.back_emf_Vs_per_rad)) [[unlikely]]
+  if (!motor_check_.update(current_A_, joint_speed_rad_per_s_, resistances_, settings.motor_model.back_emf_Vs_per_rad))
+      [[unlikely]]
     raise(Fault::motor_implausible);
   // The bridges apply the duty cycles of the previous period.
-  turn_to(motor_check_, turn_, drive_.duty[turn_] * supply_.supply_V,
-          {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
+  motor_check_.turn_to(
+      turn_, drive_.duty[turn_] * supply_.supply_V,
+      {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
 /// If a current sensor reads too low, the current loop drives too much current. The voltage range therefore allows at
@@ -413,15 +414,15 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   note(Event::held_back, limits_ != 0);
   // Faults with voids_reference invalidate the inkwell reference, even while another fault is active.
   if ((found & protocol::voiding_conditions).any() && reference_.valid) [[unlikely]]
-    forget(reference_, (found & condition(Fault::inkwell_implausible)).any());
+    reference_.forget((found & condition(Fault::inkwell_implausible)).any());
   if (!stays_unchanged(supervisor_.state, {now, found})) [[unlikely]]
     change_state(advance(supervisor_, {now, found}));
   pending_ = {.events = lasting_events_};
   if (test_.runs()) [[unlikely]]
     follow_test(found, settings);
   if (brake_.is_on()) [[unlikely]] {
-    advance(brake_, speed_squared_m2_per_s2, found);
-    drive_.brake = shorts(brake_, current_A_, settings.limits.brake_A);
+    brake_.advance(speed_squared_m2_per_s2, found);
+    drive_.brake = brake_.shorts(current_A_, settings.limits.brake_A);
   }
 }
 

@@ -129,9 +129,9 @@ class CheckedRig : public BoardRig {
       const control::MotorModel& model = settings_.motor_model;
       const auto resistance =
           control::Resistance::of(measured_.resistance_ohm[motor], value[10 + motor], model.resistance_ohm[motor]);
-      turn_to(motor_check_, motor, previous_V, loss);
-      update_motor_check(motor_check_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]},
-                         {resistance, resistance, resistance}, model.back_emf_Vs_per_rad);
+      motor_check_.turn_to(motor, previous_V, loss);
+      motor_check_.update({value[3], value[4], value[5]}, {value[6], value[7], value[8]},
+                          {resistance, resistance, resistance}, model.back_emf_Vs_per_rad);
       nearest_V = std::max(nearest_V, motor_check_.beyond_V[motor]);
       const auto deviation = control::unexplained(previous_V, loss, value[3 + motor], value[6 + motor], resistance,
                                                   model.back_emf_Vs_per_rad[motor]);

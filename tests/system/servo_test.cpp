@@ -148,7 +148,7 @@ TEST_CASE(
   };
   const auto checking = instructions_in({"Controller9supervise", "Controller12check_motors"});
   const auto heartbeat = instructions_in({"Bridges12begin_period", "Bridges10end_period"});
-  const auto heat = instructions_in({"7control11update_heat"});
+  const auto heat = instructions_in({"MotorHeat6update"});
   const auto bounds = instructions_in({"Controller14bound_voltages"});
   // The motor check calls update_resistance() once per 128 checks of a motor.
   const auto resistance = instructions_in({"Controller17update_resistance"});

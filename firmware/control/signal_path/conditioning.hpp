@@ -29,11 +29,10 @@ struct CurrentOffsets {
   std::uint32_t periods = 0;
   bool plausible = false;
 
+  /// Adds one reading. The offsets and their plausibility are valid once measured() is true.
+  [[gnu::cold]] void measure(const Triple& current_A);
   bool measured() const { return periods >= duration_periods; }
 };
-
-/// Adds one reading. The offsets are valid when measured() returns true.
-[[gnu::cold]] void measure_offsets(CurrentOffsets& offsets, const Triple& current_A);
 
 // ---- supply --------------------------------------------------------------------------------------------
 
@@ -48,9 +47,9 @@ struct SupplyFilter {
   float supply_V = 0.0f;
   float per_V = 1.0f / floor_V;
   bool started = false;
-};
 
-void filter_supply(SupplyFilter& filter, float sample_V);
+  void filter(float sample_V);
+};
 
 // ---- switches ------------------------------------------------------------------------------------------
 
@@ -61,10 +60,10 @@ struct SwitchFilter {
 
   std::uint8_t closed = 0;
   std::array<std::uint8_t, count> changed_readings{};  ///< consecutive readings that differ from `closed`
-};
 
-/// `turn` is the index of the switch to filter.
-void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn);
+  /// `turn` is the index of the switch to filter.
+  void debounce(std::uint8_t switches, std::size_t turn);
+};
 
 // ---- inkwell -------------------------------------------------------------------------------------------
 
@@ -81,19 +80,19 @@ struct InkwellReference {
   std::array<std::int32_t, 3> rest_counts{};  ///< encoder counts at the last rest position of the arm
   std::uint32_t rested_periods = 0;
   bool valid = false;
+
+  /// Stores the present counts as the inkwell reference after the switch has been closed and the arm has been
+  /// stationary for 0.1 s. Each insertion of the stylus stores one reference. Returns true in the period in which the
+  /// reference is stored.
+  bool update(const std::array<std::int32_t, 3>& encoder_counts, bool inkwell_closed);
+
+  /// After this call, the arm is unreferenced until the stylus is in the inkwell again. If `switch_in_doubt` is true,
+  /// the inkwell switch must first open.
+  constexpr void forget(bool switch_in_doubt) {
+    counts = {};
+    rested_periods = switch_in_doubt ? still_periods + 1 : 0;
+    valid = false;
+  }
 };
-
-/// After this call, the arm is unreferenced until the stylus is in the inkwell again. If `switch_in_doubt` is true, the
-/// inkwell switch must first open.
-constexpr void forget(InkwellReference& reference, bool switch_in_doubt) {
-  reference.counts = {};
-  reference.rested_periods = switch_in_doubt ? InkwellReference::still_periods + 1 : 0;
-  reference.valid = false;
-}
-
-/// Stores the inkwell reference after the arm has been stationary in the inkwell for 0.1 s. Each insertion of the
-/// stylus stores one reference. Returns true if this call stored a reference.
-bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,
-                      bool inkwell_closed);
 
 }  // namespace inkwell::control

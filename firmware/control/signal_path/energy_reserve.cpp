@@ -4,11 +4,10 @@
 
 namespace inkwell::control {
 
-void update_energy(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m,
-                   const EnergyLimits& limits) {
-  const float delivered_J = dot(felt_N, position_m - reserve.position_m);
-  reserve.position_m = position_m;
-  reserve.left_J = clamp(reserve.left_J + limits.refill_J_per_period - delivered_J, 0.0f, limits.reserve_J);
+void EnergyReserve::update(const Vector3& felt_N, const Vector3& probe_m, const EnergyLimits& limits) {
+  const float delivered_J = dot(felt_N, probe_m - position_m);
+  position_m = probe_m;
+  left_J = clamp(left_J + limits.refill_J_per_period - delivered_J, 0.0f, limits.reserve_J);
 }
 
 Vector3 without_drive(const Vector3& force_N, float power_W, const Vector3& velocity_m_per_s, float part) {

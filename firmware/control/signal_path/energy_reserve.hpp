@@ -26,25 +26,17 @@ struct EnergyReserve {
 
   float left_J = 0.0f;
   Vector3 position_m;  ///< position of the probe in the previous period
+
+  /// Advances by one control period. Subtracts the work of the previous period's force, `felt_N`, on the path to
+  /// `probe_m`. Adds the energy that may be delivered in each period.
+  void update(const Vector3& felt_N, const Vector3& probe_m, const EnergyLimits& limits);
+
+  /// Returns the remaining energy divided by the energy below which the force is reduced.
+  float part_left(const EnergyLimits& limits) const { return left_J * limits.low_reserves_per_J; }
+  bool is_low(const EnergyLimits& limits) const { return part_left(limits) < 1.0f; }
+  /// Returns the fraction (0..1) by which the force component along the motion is reduced.
+  float driving_reduction(const EnergyLimits& limits) const { return is_low(limits) ? 1.0f - part_left(limits) : 0.0f; }
 };
-
-/// Advances by one control period. Subtracts the work of the force `felt_N` on the path to `position_m`. Adds
-/// `refill_J_per_period`.
-void update_energy(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m,
-                   const EnergyLimits& limits);
-
-/// Remaining energy divided by the energy below which the force is reduced.
-inline float part_left(const EnergyReserve& reserve, const EnergyLimits& limits) {
-  return reserve.left_J * limits.low_reserves_per_J;
-}
-inline bool is_low(const EnergyReserve& reserve, const EnergyLimits& limits) {
-  return part_left(reserve, limits) < 1.0f;
-}
-
-/// Returns the fraction (0..1) by which the force component along the motion is reduced.
-inline float driving_reduction(const EnergyReserve& reserve, const EnergyLimits& limits) {
-  return is_low(reserve, limits) ? 1.0f - part_left(reserve, limits) : 0.0f;
-}
 
 /// Reduces the force component along the motion by the fraction `part`.
 [[gnu::cold]] Vector3 without_drive(const Vector3& force_N, float power_W, const Vector3& velocity_m_per_s, float part);

@@ -12,14 +12,11 @@ struct Transition {
   float part = 0.0f;  ///< remaining part of the jump, 1 to 0
   float part_per_period = 0.0f;
 
+  constexpr void advance() { part = part > part_per_period ? part - part_per_period : 0.0f; }
   Vector3 force_N() const { return part * jump_N; }
 };
 
 /// `jump_N` is the old force minus the new force. The magnitude of the added force falls by `N_per_period`.
 Transition start_transition(const Vector3& jump_N, float N_per_period);
-
-constexpr void advance(Transition& transition) {
-  transition.part = transition.part > transition.part_per_period ? transition.part - transition.part_per_period : 0.0f;
-}
 
 }  // namespace inkwell::control

@@ -53,56 +53,52 @@ bool less(const Slope& a, const Slope& b) { return a.half_counts * b.periods < b
   return line;
 }
 
-void remember(SpeedEstimate& estimate, const EncoderEdge& edge) {
-  estimate.newest = estimate.newest + 1 == SpeedEstimate::capacity ? 0 : estimate.newest + 1;
-  estimate.edges[estimate.newest] = edge;
-  if (estimate.remembered < SpeedEstimate::capacity) ++estimate.remembered;
+}  // namespace
+
+void SpeedEstimate::remember(const EncoderEdge& edge) {
+  newest = newest + 1 == capacity ? 0 : newest + 1;
+  edges[newest] = edge;
+  if (remembered < capacity) ++remembered;
 }
 
-/// Limits the speed to one count divided by the time since the last edge. Call this function in each period without an
-/// edge.
-void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
-  if (silent_periods >= SpeedEstimate::rest_periods) {
-    estimate.remembered = 0;
-    estimate.head_waits = false;
-    estimate.counts_per_period = 0.0f;
+void SpeedEstimate::decay(std::uint32_t silent_periods) {
+  if (silent_periods >= rest_periods) {
+    remembered = 0;
+    head_waits = false;
+    counts_per_period = 0.0f;
     return;
   }
   // The speed falls in steps of 1/16, because unchanged values need fewer bytes in scope frames.
   constexpr float step = 1.0f + 1.0f / 16.0f;
-  const float speed = estimate.counts_per_period;
+  const float speed = counts_per_period;
   const auto silent = static_cast<float>(silent_periods);
   if (!(std::fabs(speed * silent) > step)) return;
   const float bound = reciprocal(silent);
-  estimate.counts_per_period = speed > 0.0f ? bound : -bound;
+  counts_per_period = speed > 0.0f ? bound : -bound;
 }
 
-}  // namespace
-
-void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, bool may_fit) {
-  const std::int32_t before = estimate.counts;
-  if (counts == before) {
-    decay(estimate, period - estimate.head.period);
+void SpeedEstimate::update(std::int32_t now_counts, std::uint32_t period, bool may_fit) {
+  const std::int32_t before = counts;
+  if (now_counts == before) {
+    decay(period - head.period);
   } else {
-    const std::int32_t direction = counts > before ? 1 : -1;
-    const bool restarts = estimate.remembered == 0 || direction != estimate.direction;
-    estimate.counts = counts;
-    estimate.direction = direction;
-    estimate.head = {period, direction > 0 ? counts : counts + 1};
-    estimate.head_waits = !restarts;
+    const std::int32_t new_direction = now_counts > before ? 1 : -1;
+    const bool restarts = remembered == 0 || new_direction != direction;
+    counts = now_counts;
+    direction = new_direction;
+    head = {period, new_direction > 0 ? now_counts : now_counts + 1};
+    head_waits = !restarts;
     if (restarts) {
-      estimate.remembered = 0;
-      estimate.counts_per_period = 0.0f;
-      remember(estimate, estimate.head);
+      remembered = 0;
+      counts_per_period = 0.0f;
+      remember(head);
     }
   }
-  if (!estimate.head_waits || !may_fit) return;
-  estimate.head_waits = false;
-  const Slope line = fit_line(estimate, estimate.head);
-  estimate.counts_per_period =
-      0.5f * static_cast<float>(line.half_counts) * reciprocal(static_cast<float>(line.periods));
-  if (estimate.head.period - estimate.edges[estimate.newest].period >= SpeedEstimate::spacing_periods)
-    remember(estimate, estimate.head);
+  if (!head_waits || !may_fit) return;
+  head_waits = false;
+  const Slope line = fit_line(*this, head);
+  counts_per_period = 0.5f * static_cast<float>(line.half_counts) * reciprocal(static_cast<float>(line.periods));
+  if (head.period - edges[newest].period >= spacing_periods) remember(head);
 }
 
 }  // namespace inkwell::control

@@ -47,16 +47,22 @@ struct SpeedEstimate {
   std::int32_t counts = 0;
   std::int32_t direction = 0;  ///< direction of the last edge: +1, -1, or 0 before the first edge
   float counts_per_period = 0.0f;
+
+  /// Starts a new estimate with a speed of zero at these counts.
+  constexpr void start(std::int32_t now_counts, std::uint32_t period) {
+    counts = now_counts;
+    head.period = period;
+  }
+
+  /// Processes the counts of one control period. If `may_fit` is false, a new edge is not fitted until the next period
+  /// in which `may_fit` is true. The caller can thus limit each period to the fit of one joint. A fit needs at most
+  /// `capacity` short steps and no division.
+  void update(std::int32_t now_counts, std::uint32_t period, bool may_fit = true);
+
+ private:
+  void remember(const EncoderEdge& edge);
+  /// Limits the speed to one count divided by the time since the last edge. Each period without an edge calls it.
+  void decay(std::uint32_t silent_periods);
 };
-
-/// Resets the speed to zero at `counts`.
-constexpr void start(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period) {
-  estimate.counts = counts;
-  estimate.head.period = period;
-}
-
-/// Processes the counts of one control period. A new edge is fitted only if `may_fit` is true. The caller thus limits
-/// each period to one fit. A fit needs at most `capacity` short steps and no division.
-void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, bool may_fit = true);
 
 }  // namespace inkwell::control

@@ -40,6 +40,28 @@ struct AnalogSupply {
   std::int32_t expected_counts = typical_counts;  ///< reading of VREFINT at nominal VDDA
   std::int32_t tolerance_per_mille = 0;           ///< tolerated deviation of VDDA
   std::uint32_t wrong_readings = 0;
+
+  /// Returns true if this reading of VREFINT corresponds to a valid VDDA.
+  bool is_right(std::uint16_t reference_counts) const {
+    // VDDA / nominal VDDA = expected reading / this reading.
+    const std::int32_t off_counts = std::abs(expected_counts - reference_counts);
+    return 1000 * off_counts <= tolerance_per_mille * reference_counts;
+  }
+
+  /// Checks one reading of VREFINT. Returns true after more than `tolerated_readings` consecutive wrong readings.
+  bool is_off(std::uint16_t reference_counts) {
+    if (is_right(reference_counts))
+      wrong_readings = 0;
+    else if (wrong_readings <= tolerated_readings)
+      ++wrong_readings;
+    return wrong_readings > tolerated_readings;
+  }
+
+  /// Returns VDDA for a VREFINT reading, or 0 for the impossible reading 0.
+  float analog_supply_V(std::uint16_t reference_counts) const {
+    if (reference_counts == 0) return 0.0f;
+    return nominal_analog_supply_V * static_cast<float>(expected_counts) / static_cast<float>(reference_counts);
+  }
 };
 
 /// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. Chips without a valid calibration
@@ -52,28 +74,6 @@ constexpr AnalogSupply analog_supply(std::uint16_t calibrated_counts) {
                            calibrated_counts <= AnalogSupply::maximum_counts + AnalogSupply::calibration_error_counts;
   if (is_possible) return {.expected_counts = calibrated_counts, .tolerance_per_mille = tolerance_per_mille};
   return {.tolerance_per_mille = tolerance_per_mille + spread_per_mille};
-}
-
-/// Returns true if this reading of VREFINT corresponds to a valid VDDA.
-inline bool is_right(const AnalogSupply& supply, std::uint16_t reference_counts) {
-  // VDDA / nominal VDDA = expected reading / this reading.
-  const std::int32_t off_counts = std::abs(supply.expected_counts - reference_counts);
-  return 1000 * off_counts <= supply.tolerance_per_mille * reference_counts;
-}
-
-/// Checks one reading of VREFINT. Returns true after more than `tolerated_readings` consecutive wrong readings.
-inline bool is_off(AnalogSupply& supply, std::uint16_t reference_counts) {
-  if (is_right(supply, reference_counts))
-    supply.wrong_readings = 0;
-  else if (supply.wrong_readings <= AnalogSupply::tolerated_readings)
-    ++supply.wrong_readings;
-  return supply.wrong_readings > AnalogSupply::tolerated_readings;
-}
-
-/// Returns VDDA for a VREFINT reading, or 0 for the impossible reading 0.
-inline float analog_supply_V(const AnalogSupply& supply, std::uint16_t reference_counts) {
-  if (reference_counts == 0) return 0.0f;
-  return nominal_analog_supply_V * static_cast<float>(supply.expected_counts) / static_cast<float>(reference_counts);
 }
 
 }  // namespace inkwell::control

@@ -25,18 +25,20 @@ struct BridgeWire {
   static constexpr std::uint32_t tolerated_readings = 1;
 
   std::uint32_t wrong_readings = 0;
+
+  /// Checks one reading of the levels.
+  constexpr void update(const BridgePins& pins) {
+    const bool wrong =
+        pins.heartbeat_is_high ||
+        (pins.on ? !pins.enable_is_high : pins.enable_is_high || pins.hold_is_high || pins.a_leg_is_high);
+    if (!wrong)
+      wrong_readings = 0;
+    else if (!is_shorted())
+      ++wrong_readings;
+  }
+
+  /// Returns true after too many consecutive readings of a wrong wire level.
+  constexpr bool is_shorted() const { return wrong_readings > tolerated_readings; }
 };
-
-/// Returns true after more than `tolerated_readings` consecutive wrong readings.
-constexpr bool is_shorted(const BridgeWire& wire) { return wire.wrong_readings > BridgeWire::tolerated_readings; }
-
-constexpr void update_wire_check(BridgeWire& wire, const BridgePins& pins) {
-  const bool wrong = pins.heartbeat_is_high ||
-                     (pins.on ? !pins.enable_is_high : pins.enable_is_high || pins.hold_is_high || pins.a_leg_is_high);
-  if (!wrong)
-    wire.wrong_readings = 0;
-  else if (!is_shorted(wire))
-    ++wire.wrong_readings;
-}
 
 }  // namespace inkwell::control

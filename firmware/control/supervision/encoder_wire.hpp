@@ -28,26 +28,27 @@ struct EncoderWire {
   std::uint16_t count = 0, before = 0;  ///< present timer count, and the last timer count that was different
   std::uint32_t changes = 0;            ///< number of changes between these two counts
   std::uint32_t since_periods = 0;
-};
 
-/// Checks the timer count in the period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
-/// `dead_changes` changes between two neighboring counts within `within_periods`. Counting then restarts.
-inline bool is_dead(EncoderWire& wire, std::uint16_t timer_count, std::uint32_t now_periods) {
-  if (timer_count == wire.count) return false;
-  const bool goes_back = timer_count == wire.before;
-  const bool in_time = now_periods - wire.since_periods <= EncoderWire::within_periods;
-  const auto step = static_cast<std::uint16_t>(timer_count - wire.count);
-  const bool to_neighbour = step == 1 || step == 0xFFFF;
-  wire.before = wire.count;
-  wire.count = timer_count;
-  if (wire.changes == 0 || !goes_back || !in_time) {
-    wire.changes = 0;
-    wire.since_periods = now_periods;
+  /// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
+  /// `dead_changes` changes between two neighboring counts within `within_periods`. Counting then restarts. Edges are
+  /// missed if they are closer together than the readings, but a fast joint still causes enough changes.
+  bool is_dead(std::uint16_t timer_count, std::uint32_t now_periods) {
+    if (timer_count == count) return false;
+    const bool goes_back = timer_count == before;
+    const bool in_time = now_periods - since_periods <= within_periods;
+    const auto step = static_cast<std::uint16_t>(timer_count - count);
+    const bool to_neighbour = step == 1 || step == 0xFFFF;
+    before = count;
+    count = timer_count;
+    if (changes == 0 || !goes_back || !in_time) {
+      changes = 0;
+      since_periods = now_periods;
+    }
+    changes += to_neighbour ? 1 : 0;
+    if (changes < dead_changes) return false;
+    changes = 0;
+    return true;
   }
-  wire.changes += to_neighbour ? 1 : 0;
-  if (wire.changes < EncoderWire::dead_changes) return false;
-  wire.changes = 0;
-  return true;
-}
+};
 
 }  // namespace inkwell::control

@@ -92,6 +92,24 @@ struct MotorCheck {
   std::size_t motor = 0;   ///< motor of this period, 0..2
   float voltage_V = 0.0f;  ///< bridge voltage in the period before the present reading
   BridgeLoss loss{};       ///< voltage drop of the bridge in that period
+
+  /// Checks the motor of this period. Returns true if voltage, current and speed of the motor are consistent.
+  bool update(const Triple& current_A, const Triple& joint_speed_rad_per_s,
+              const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
+
+  /// Completes the period. The next call of update() checks `next_motor`, 0..2. `bridge_V` is the bridge voltage of
+  /// this motor until the next call, and `bridge_loss` is the voltage drop of the bridge.
+  void turn_to(std::size_t next_motor, float bridge_V, const BridgeLoss& bridge_loss) {
+    motor = next_motor;
+    voltage_V = bridge_V;
+    loss = bridge_loss;
+  }
+
+  /// Clears the sums. Call this function while the current loops do not drive the bridges.
+  void reset() {
+    beyond_V = {};
+    voltage_V = 0.0f;
+  }
 };
 
 /// Unexplained voltage and its tolerance.
@@ -110,24 +128,6 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
   const float bridge_V = is_more || !(std::fabs(current_A) > MotorCheck::steady_A) ? loss.most_V : -loss.least_V();
   return {std::fabs(left_V), bridge_V + MotorCheck::tolerance_V + part_of_resistance * std::fabs(ohmic_V) +
                                  MotorCheck::tolerated_part_of_back_emf * std::fabs(back_emf_V)};
-}
-
-/// Checks the motor of this period. Returns true if voltage, current and speed of the motor are consistent.
-bool update_motor_check(MotorCheck& check, const Triple& current_A, const Triple& joint_speed_rad_per_s,
-                        const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
-
-/// Clears the sums. Call this function while the current loops do not drive the bridges.
-inline void reset(MotorCheck& check) {
-  check.beyond_V = {};
-  check.voltage_V = 0.0f;
-}
-
-/// Selects the motor for the next update_motor_check(). `voltage_V` is the bridge voltage of this motor until the next
-/// call.
-inline void turn_to(MotorCheck& check, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
-  check.motor = motor;
-  check.voltage_V = voltage_V;
-  check.loss = loss;
 }
 
 /// Returns the voltage range of a motor for currents up to +-`most_A`. The range is limited to +-`bound_V`.

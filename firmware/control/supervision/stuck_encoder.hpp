@@ -43,27 +43,27 @@ struct StuckEncoder {
   float least_A = 0.0f;             ///< least filtered current since the joint settled or since the last counted change
   float most_A = 0.0f;
   unsigned changes = 0;  ///< number of current changes in this standstill
-};
 
-/// Checks an encoder and its motor current in period `now_periods`. Returns true after too many current changes of more
-/// than `moving_A` at a constant count. If `held` is true, the standstill time restarts.
-inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
-                     float moving_A) {
-  encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);
-  const std::uint32_t away =
-      static_cast<std::uint32_t>(counts) - static_cast<std::uint32_t>(encoder.counts) + StuckEncoder::tolerance_counts;
-  if (held || away > 2 * StuckEncoder::tolerance_counts) {
-    encoder.counts = counts;
-    encoder.since_periods = now_periods;
-    encoder.changes = 0;
+  /// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current
+  /// changes of more than `moving_A` while the encoder was stationary. If `held` is true, the joint may be blocked, and
+  /// the standstill time restarts.
+  bool is_stuck(std::int32_t now_counts, float now_A, std::uint32_t now_periods, bool held, float moving_A) {
+    current_A += weight * (now_A - current_A);
+    const std::uint32_t away =
+        static_cast<std::uint32_t>(now_counts) - static_cast<std::uint32_t>(counts) + tolerance_counts;
+    if (held || away > 2 * tolerance_counts) {
+      counts = now_counts;
+      since_periods = now_periods;
+      changes = 0;
+    }
+    const bool settles = now_periods - since_periods < settle_periods;
+    least_A = std::min(least_A, current_A);
+    most_A = std::max(most_A, current_A);
+    const bool changed = !settles && most_A - least_A > moving_A;
+    if (settles || changed) least_A = most_A = current_A;
+    if (changed) ++changes;
+    return changes > tolerated_changes;
   }
-  const bool settles = now_periods - encoder.since_periods < StuckEncoder::settle_periods;
-  encoder.least_A = std::min(encoder.least_A, encoder.current_A);
-  encoder.most_A = std::max(encoder.most_A, encoder.current_A);
-  const bool changed = !settles && encoder.most_A - encoder.least_A > moving_A;
-  if (settles || changed) encoder.least_A = encoder.most_A = encoder.current_A;
-  if (changed) ++encoder.changes;
-  return encoder.changes > StuckEncoder::tolerated_changes;
-}
+};
 
 }  // namespace inkwell::control

@@ -37,33 +37,33 @@ struct SupplyRipple {
   std::uint32_t read_at_periods = 0;
   std::array<std::uint32_t, alternations> changed_at_periods{};  ///< ring of the newest side changes
   std::size_t next = 0, changes = 0;                             ///< next ring position; number of valid entries
+
+  /// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true while the
+  /// last `alternations` alternating excursions are within `within_periods`.
+  bool ripples(std::uint16_t supply_counts, std::uint32_t now_periods) {
+    if (mean_counts < 0) mean_counts = supply_counts * mean_periods;
+    constexpr auto all = static_cast<std::uint32_t>(mean_periods);
+    const auto passed_periods = static_cast<std::int32_t>(std::min(now_periods - read_at_periods, all));
+    read_at_periods = now_periods;
+    const std::int32_t beyond_counts = supply_counts - mean_counts / mean_periods;
+    mean_counts += beyond_counts * passed_periods;
+
+    const bool is_above = beyond_counts > tolerance_counts, is_below = beyond_counts < -tolerance_counts;
+    if ((is_above && below) || (is_below && above)) {
+      changed_at_periods[next] = now_periods;
+      next = (next + 1) % alternations;
+      changes = std::min(changes + 1, alternations);
+    }
+    if (is_above || is_below) {
+      above = is_above;
+      below = is_below;
+    }
+    if (changes == 0) return false;
+    // In a full ring, the oldest entry is overwritten next.
+    const std::size_t oldest = (next + alternations - changes) % alternations;
+    if (now_periods - changed_at_periods[oldest] > within_periods) --changes;
+    return changes == alternations;
+  }
 };
-
-/// Checks the supply voltage in the period `now_periods`. Period numbers may be skipped and may wrap. Returns true
-/// while the last `alternations` alternating excursions occurred within `within_periods`.
-inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint32_t now_periods) {
-  if (ripple.mean_counts < 0) ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;
-  constexpr auto all = static_cast<std::uint32_t>(SupplyRipple::mean_periods);
-  const auto passed_periods = static_cast<std::int32_t>(std::min(now_periods - ripple.read_at_periods, all));
-  ripple.read_at_periods = now_periods;
-  const std::int32_t beyond_counts = supply_counts - ripple.mean_counts / SupplyRipple::mean_periods;
-  ripple.mean_counts += beyond_counts * passed_periods;
-
-  const bool above = beyond_counts > ripple.tolerance_counts, below = beyond_counts < -ripple.tolerance_counts;
-  if ((above && ripple.below) || (below && ripple.above)) {
-    ripple.changed_at_periods[ripple.next] = now_periods;
-    ripple.next = (ripple.next + 1) % SupplyRipple::alternations;
-    ripple.changes = std::min(ripple.changes + 1, SupplyRipple::alternations);
-  }
-  if (above || below) {
-    ripple.above = above;
-    ripple.below = below;
-  }
-  if (ripple.changes == 0) return false;
-  // In a full ring, the oldest entry is overwritten next.
-  const std::size_t oldest = (ripple.next + SupplyRipple::alternations - ripple.changes) % SupplyRipple::alternations;
-  if (now_periods - ripple.changed_at_periods[oldest] > SupplyRipple::within_periods) --ripple.changes;
-  return ripple.changes == SupplyRipple::alternations;
-}
 
 }  // namespace inkwell::control

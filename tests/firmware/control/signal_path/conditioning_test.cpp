@@ -13,7 +13,7 @@ TEST_CASE("the offsets are the mean of a tenth of a second") {
   for (std::uint32_t i = 0; i < CurrentOffsets::duration_periods; ++i) {
     CHECK_FALSE(offsets.measured());
     const float noise = i % 2 == 0 ? 0.01f : -0.01f;
-    measure_offsets(offsets, {0.05f + noise, -0.02f - noise, noise});
+    offsets.measure({0.05f + noise, -0.02f - noise, noise});
   }
   CHECK(offsets.measured());
   CHECK(CurrentOffsets::duration_periods == 2'000);
@@ -26,7 +26,7 @@ TEST_CASE("the offsets are the mean of a tenth of a second") {
 TEST_CASE("an offset beyond what an amplifier can have is a broken sensor") {
   const auto plausible = [](const Triple& offset_A) {
     CurrentOffsets offsets;
-    while (!offsets.measured()) measure_offsets(offsets, offset_A);
+    while (!offsets.measured()) offsets.measure(offset_A);
     return offsets.plausible;
   };
   CHECK_FALSE(plausible({0.0f, -4.1f, 0.0f}));
@@ -37,16 +37,16 @@ TEST_CASE("an offset beyond what an amplifier can have is a broken sensor") {
 
 TEST_CASE("the supply is filtered, and its reciprocal is ready and finite even without a supply") {
   SupplyFilter filter;
-  filter_supply(filter, 18.0f);
+  filter.filter(18.0f);
   CHECK(filter.supply_V == 18.0f);
   CHECK(filter.per_V == doctest::Approx(1.0 / 18.0).scale(0).epsilon(1e-6));
-  filter_supply(filter, 12.0f);
+  filter.filter(12.0f);
   CHECK(filter.supply_V == doctest::Approx(18.0 - 6.0 / 32));
-  for (int i = 0; i < 320; ++i) filter_supply(filter, 0.0f);
+  for (int i = 0; i < 320; ++i) filter.filter(0.0f);
   CHECK(filter.supply_V < 0.01f);
   CHECK(filter.per_V == doctest::Approx(1.0));
-  filter_supply(filter, std::numeric_limits<float>::quiet_NaN());
-  filter_supply(filter, 17.0f);
+  filter.filter(std::numeric_limits<float>::quiet_NaN());
+  filter.filter(17.0f);
   CHECK(filter.supply_V == 17.0f);
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("switches count after 5 ms without change") {
   SwitchFilter filter;
   std::uint32_t period = 0;
   const auto show = [&](std::uint8_t switches, std::uint32_t periods) {
-    for (; periods > 0; --periods, ++period) debounce(filter, switches, period % SwitchFilter::count);
+    for (; periods > 0; --periods, ++period) filter.debounce(switches, period % SwitchFilter::count);
   };
   for (int i = 0; i < 20; ++i) {
     show(1, SwitchFilter::settle_periods - 10);
@@ -70,9 +70,8 @@ TEST_CASE("switches count after 5 ms without change") {
   for (std::uint32_t later = 0; later < 6; ++later) {
     CAPTURE(later);
     SwitchFilter other;
-    for (std::uint32_t i = 0; i < SwitchFilter::settle_periods + later; ++i)
-      debounce(other, 1, i % SwitchFilter::count);
-    for (std::uint32_t i = 0; i < 2 * SwitchFilter::settle_periods; ++i) debounce(other, 0, i % SwitchFilter::count);
+    for (std::uint32_t i = 0; i < SwitchFilter::settle_periods + later; ++i) other.debounce(1, i % SwitchFilter::count);
+    for (std::uint32_t i = 0; i < 2 * SwitchFilter::settle_periods; ++i) other.debounce(0, i % SwitchFilter::count);
     CHECK(other.closed == 0);
   }
   // Each switch has an independent filter.
@@ -85,19 +84,19 @@ TEST_CASE("switches count after 5 ms without change") {
 TEST_CASE("the inkwell gives its reference once the arm has been still in it for 0.1 s") {
   InkwellReference reference;
   std::array<std::int32_t, 3> counts{100, -20, 7};
-  for (int i = 0; i < 5'000; ++i) CHECK_FALSE(update_reference(reference, counts, false));
+  for (int i = 0; i < 5'000; ++i) CHECK_FALSE(reference.update(counts, false));
   CHECK_FALSE(reference.valid);
 
   // No reference is recorded while the arm moves with a closed switch.
   for (int i = 0; i < 3'000; ++i) {
     if (i % 1'000 == 0) counts[1] += i == 1'000 ? -2 : 2;
-    CHECK_FALSE(update_reference(reference, counts, true));
+    CHECK_FALSE(reference.update(counts, true));
   }
   // Counts that alternate by one do not prevent a reference.
   int taken = 0;
   for (int i = 0; i < 20'000; ++i) {
     counts[2] = 7 + i % 2;
-    if (update_reference(reference, counts, true)) ++taken;
+    if (reference.update(counts, true)) ++taken;
   }
   CHECK(taken == 1);
   CHECK(reference.valid);
@@ -105,17 +104,16 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   CHECK(reference.counts[1] == -18);
 
   // A stylus that is removed, moved and inserted again causes a new reference.
-  update_reference(reference, counts, false);
+  reference.update(counts, false);
   counts[0] = 104;
-  for (std::uint32_t i = 0; i < InkwellReference::still_periods + 2; ++i) update_reference(reference, counts, true);
+  for (std::uint32_t i = 0; i < InkwellReference::still_periods + 2; ++i) reference.update(counts, true);
   CHECK(reference.counts[0] == 104);
 
   // After forget(), a stylus in the inkwell causes a new reference.
-  forget(reference, false);
+  reference.forget(false);
   CHECK_FALSE(reference.valid);
-  for (std::uint32_t i = 0; i < InkwellReference::still_periods; ++i)
-    CHECK_FALSE(update_reference(reference, counts, true));
-  CHECK(update_reference(reference, counts, true));
+  for (std::uint32_t i = 0; i < InkwellReference::still_periods; ++i) CHECK_FALSE(reference.update(counts, true));
+  CHECK(reference.update(counts, true));
   CHECK(reference.valid);
 }
 

@@ -23,24 +23,24 @@ constexpr control::EnergyLimits limits{.reserve_J = 0.04f, .refill_J_per_period 
 
 TEST_CASE("what the force gave on the probe's way is taken out, and what the hand gave is put in") {
   EnergyReserve reserve{0.02f, {0.1f, 0.0f, 0.0f}};
-  update_energy(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, 0.0f, 0.0f}, limits);
+  reserve.update({2.0f, 1.0f, 0.0f}, {0.101f, 0.0f, 0.0f}, limits);
   CHECK(reserve.left_J == doctest::Approx(0.02f - 0.002f + 5e-5f));
-  update_energy(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, -0.004f, 0.0f}, limits);
+  reserve.update({2.0f, 1.0f, 0.0f}, {0.101f, -0.004f, 0.0f}, limits);
   CHECK(reserve.left_J == doctest::Approx(0.018f + 0.004f + 1e-4f));
-  for (int i = 0; i < 100; ++i) update_energy(reserve, {}, reserve.position_m, limits);
+  for (int i = 0; i < 100; ++i) reserve.update({}, reserve.position_m, limits);
   CHECK(reserve.left_J == doctest::Approx(0.0221f + 100 * 5e-5f));
 
-  update_energy(reserve, {-8.0f, 0.0f, 0.0f}, {0.2f, -0.004f, 0.0f}, limits);  // a hand that presses for a long time
+  reserve.update({-8.0f, 0.0f, 0.0f}, {0.2f, -0.004f, 0.0f}, limits);  // a hand that presses for a long time
   CHECK(reserve.left_J == limits.reserve_J);
-  update_energy(reserve, {8.0f, 0.0f, 0.0f}, {0.3f, -0.004f, 0.0f}, limits);
+  reserve.update({8.0f, 0.0f, 0.0f}, {0.3f, -0.004f, 0.0f}, limits);
   CHECK(reserve.left_J == 0.0f);
 }
 
 TEST_CASE("only what drives the motion gives way, from a quarter of the reserve on, all of it at none") {
-  CHECK(driving_reduction({0.04f, {}}, limits) == 0.0f);
-  CHECK(driving_reduction({0.01f, {}}, limits) == 0.0f);
-  CHECK(driving_reduction({0.005f, {}}, limits) == doctest::Approx(0.5f));
-  CHECK(driving_reduction({0.0f, {}}, limits) == 1.0f);
+  CHECK(EnergyReserve{0.04f, {}}.driving_reduction(limits) == 0.0f);
+  CHECK(EnergyReserve{0.01f, {}}.driving_reduction(limits) == 0.0f);
+  CHECK(EnergyReserve{0.005f, {}}.driving_reduction(limits) == doctest::Approx(0.5f));
+  CHECK(EnergyReserve{0.0f, {}}.driving_reduction(limits) == 1.0f);
 
   const Vector3 force_N{2.0f, -1.0f, 0.5f}, velocity_m_per_s{0.4f, 0.0f, 0.3f};
   const float power_W = dot(force_N, velocity_m_per_s);

@@ -29,40 +29,40 @@ float length(const Vector3& vector) { return std::sqrt(control::dot(vector, vect
 
 TEST_CASE("between two reports the force goes in a straight line") {
   ProgramForce program;
-  control::set_target(program, target({0.4f, 0.0f, -0.2f}), limits);
+  program.set_target(target({0.4f, 0.0f, -0.2f}), limits);
   for (int period = 1; period <= 20; ++period) {
-    control::advance(program, limits);
+    program.advance(limits);
     CHECK(program.force_N.x == doctest::Approx(0.02f * static_cast<float>(period)).epsilon(1e-5));
     CHECK(program.force_N.z == doctest::Approx(-0.01f * static_cast<float>(period)).epsilon(1e-5));
   }
   // The force remains constant until the next report.
-  for (int period = 0; period < 100; ++period) control::advance(program, limits);
+  for (int period = 0; period < 100; ++period) program.advance(limits);
   CHECK(program.force_N.x == doctest::Approx(0.4f).epsilon(1e-5));
-  control::set_target(program, target({0.0f, 0.0f, -0.2f}, 40), limits);
-  for (int period = 0; period < 20; ++period) control::advance(program, limits);
+  program.set_target(target({0.0f, 0.0f, -0.2f}, 40), limits);
+  for (int period = 0; period < 20; ++period) program.advance(limits);
   CHECK(program.force_N.x == doctest::Approx(0.2f).epsilon(1e-5));
   CHECK(program.force_N.z == doctest::Approx(-0.2f).epsilon(1e-5));
 }
 
 TEST_CASE("a report beyond the limit keeps its direction") {
   ProgramForce program;
-  control::set_target(program, target({300.0f, -400.0f, 0.0f}), limits);
-  for (int period = 0; period < 200; ++period) control::advance(program, limits);
+  program.set_target(target({300.0f, -400.0f, 0.0f}), limits);
+  for (int period = 0; period < 200; ++period) program.advance(limits);
   CHECK(length(program.force_N) == doctest::Approx(3.3f).epsilon(0.02));
   CHECK(program.force_N.y / program.force_N.x == doctest::Approx(-4.0f / 3.0f).epsilon(1e-4));
 }
 
 TEST_CASE("the force never changes faster than its bound, and gets there all the same") {
   ProgramForce program;
-  control::set_target(program, target({-3.0f, 0.0f, 0.0f}, 1), limits);
-  for (int period = 0; period < 100; ++period) control::advance(program, limits);
+  program.set_target(target({-3.0f, 0.0f, 0.0f}, 1), limits);
+  for (int period = 0; period < 100; ++period) program.advance(limits);
   const Vector3 wanted[] = {{3.0f, 0.0f, 0.0f}, {0.0f, 3.0f, 0.0f}, {-1.0f, -1.0f, 2.0f}};
   for (const Vector3& force_N : wanted) {
-    control::set_target(program, target(force_N, 1), limits);
+    program.set_target(target(force_N, 1), limits);
     float fastest_N = 0.0f;
     for (int period = 0; period < 150; ++period) {
       const Vector3 before_N = program.force_N;
-      control::advance(program, limits);
+      program.advance(limits);
       fastest_N = std::max(fastest_N, length(program.force_N - before_N));
     }
     CHECK(fastest_N == doctest::Approx(change_N_per_period).scale(0).epsilon(1e-4));
@@ -72,14 +72,14 @@ TEST_CASE("the force never changes faster than its bound, and gets there all the
 
 TEST_CASE("without a report the force stays for the expiry and is gone 10 ms later, without a jump") {
   ProgramForce program;
-  control::set_target(program, target({2.0f, 0.0f, 0.0f}), limits);
-  for (std::uint32_t period = 0; period < limits.expiry_periods; ++period) control::advance(program, limits);
+  program.set_target(target({2.0f, 0.0f, 0.0f}), limits);
+  for (std::uint32_t period = 0; period < limits.expiry_periods; ++period) program.advance(limits);
   CHECK(program.force_N.x == doctest::Approx(2.0f).epsilon(1e-5));
   CHECK(!program.is_driven());
   float fastest_N = 0.0f;
   for (std::uint32_t period = 0; period < ProgramForce::fade_periods; ++period) {
     const float before_N = program.force_N.x;
-    control::advance(program, limits);
+    program.advance(limits);
     fastest_N = std::max(fastest_N, before_N - program.force_N.x);
   }
   CHECK(program.force_N == Vector3{});
@@ -88,35 +88,35 @@ TEST_CASE("without a report the force stays for the expiry and is gone 10 ms lat
 
 TEST_CASE("a program that ends lets its force fade at once, and one that comes back takes over from there") {
   ProgramForce program;
-  control::set_target(program, target({2.0f, 0.0f, 0.0f}, 20, ForceMode::instead_of_walls), limits);
-  for (int period = 0; period < 40; ++period) control::advance(program, limits);
-  control::set_target(program, target({}, 20, ForceMode::none), limits);
+  program.set_target(target({2.0f, 0.0f, 0.0f}, 20, ForceMode::instead_of_walls), limits);
+  for (int period = 0; period < 40; ++period) program.advance(limits);
+  program.set_target(target({}, 20, ForceMode::none), limits);
   CHECK(!program.is_driven());
-  for (int period = 0; period < 100; ++period) control::advance(program, limits);
+  for (int period = 0; period < 100; ++period) program.advance(limits);
   const float half_N = program.force_N.x;
   CHECK(half_N == doctest::Approx(1.0f).epsilon(1e-3));
-  control::set_target(program, target({1.5f, 0.0f, 0.0f}), limits);
-  control::advance(program, limits);
+  program.set_target(target({1.5f, 0.0f, 0.0f}), limits);
+  program.advance(limits);
   CHECK(program.force_N.x == doctest::Approx(half_N + 0.025f).epsilon(1e-3));
 }
 
 TEST_CASE("a second end does not stretch the fading") {
   ProgramForce program;
-  control::set_target(program, target({2.0f, 0.0f, 0.0f}), limits);
-  for (int period = 0; period < 40; ++period) control::advance(program, limits);
+  program.set_target(target({2.0f, 0.0f, 0.0f}), limits);
+  for (int period = 0; period < 40; ++period) program.advance(limits);
   for (std::uint32_t period = 0; period < ProgramForce::fade_periods; ++period) {
-    control::set_target(program, target({}, 20, ForceMode::none), limits);
-    control::advance(program, limits);
+    program.set_target(target({}, 20, ForceMode::none), limits);
+    program.advance(limits);
   }
   CHECK(program.force_N == Vector3{});
 }
 
 TEST_CASE("late is more than a millisecond after the interval that the program named") {
   ProgramForce program;
-  CHECK(!control::set_target(program, target({}), limits));
+  CHECK(!program.set_target(target({}), limits));
   const auto next_after = [&](int periods) {
-    for (int period = 0; period < periods; ++period) control::advance(program, limits);
-    return control::set_target(program, target({}), limits);
+    for (int period = 0; period < periods; ++period) program.advance(limits);
+    return program.set_target(target({}), limits);
   };
   CHECK(!next_after(20));
   CHECK(!next_after(40));

@@ -36,7 +36,7 @@ Quality follow_sine(double amplitude_counts, double frequency_Hz) {
   for (std::uint32_t period = 1; period <= turns * turn; ++period) {
     const double t = period / rate_Hz;
     const std::int32_t counts = counts_at(amplitude_counts * std::sin(omega * t) + 0.37);
-    control::update(estimate, counts, period);
+    estimate.update(counts, period);
     const double truth = amplitude_counts * omega * std::cos(omega * t);
     const double value = estimate.counts_per_period * rate_Hz;
     const double raw = (counts - before) * rate_Hz;
@@ -83,7 +83,7 @@ TEST_CASE("constant speeds from 0.5 mm/s to 3 m/s") {
       const auto periods = static_cast<std::uint32_t>(std::max(4'000.0, 40 * rate_Hz / counts_per_s));
       double worst = 0;
       for (std::uint32_t period = 1; period <= periods; ++period) {
-        control::update(estimate, counts_at(sign * counts_per_s * period / rate_Hz), period);
+        estimate.update(counts_at(sign * counts_per_s * period / rate_Hz), period);
         if (period > periods / 2)
           worst = std::max(worst, std::abs(estimate.counts_per_period * rate_Hz - sign * counts_per_s) / counts_per_s);
       }
@@ -102,8 +102,8 @@ TEST_CASE("joints that take turns lag by a tenth of a millisecond more and are a
     double worst = 0;
     for (std::uint32_t period = 1; period <= 8'000; ++period) {
       const std::int32_t counts = counts_at(counts_per_s * period / rate_Hz);
-      control::update(every, counts, period);
-      control::update(third, counts, period, period % 3 == 0);
+      every.update(counts, period);
+      third.update(counts, period, period % 3 == 0);
       if (period > 4'000)
         worst = std::max(worst, std::abs(third.counts_per_period * rate_Hz - counts_per_s) / counts_per_s);
     }
@@ -114,16 +114,16 @@ TEST_CASE("joints that take turns lag by a tenth of a millisecond more and are a
 
 TEST_CASE("at rest it is exactly zero, also after motion and while a count dithers") {
   SpeedEstimate estimate;
-  control::start(estimate, 1'000, 0);
+  estimate.start(1'000, 0);
   std::uint32_t period = 1;
-  for (; period < 100; ++period) control::update(estimate, 1'000, period);
+  for (; period < 100; ++period) estimate.update(1'000, period);
   CHECK(estimate.counts_per_period == 0.0f);
-  for (std::int32_t i = 0; i < 50; ++i, period += 10) control::update(estimate, 1'000 + i, period);
+  for (std::int32_t i = 0; i < 50; ++i, period += 10) estimate.update(1'000 + i, period);
   CHECK(estimate.counts_per_period == doctest::Approx(0.1f));
-  for (std::uint32_t i = 0; i < SpeedEstimate::rest_periods; ++i) control::update(estimate, 1'049, ++period);
+  for (std::uint32_t i = 0; i < SpeedEstimate::rest_periods; ++i) estimate.update(1'049, ++period);
   CHECK(estimate.counts_per_period == 0.0f);
   for (int i = 0; i < 100; ++i) {
-    control::update(estimate, 1'049 + i % 2, period += 7);
+    estimate.update(1'049 + i % 2, period += 7);
     CHECK(estimate.counts_per_period == 0.0f);
   }
 }
@@ -131,10 +131,10 @@ TEST_CASE("at rest it is exactly zero, also after motion and while a count dithe
 TEST_CASE("after a sudden stop the speed is bounded by one count in the time of silence") {
   SpeedEstimate estimate;
   std::uint32_t period = 0;
-  for (std::int32_t counts = 1; counts < 200; ++counts) control::update(estimate, counts, period += 4);
+  for (std::int32_t counts = 1; counts < 200; ++counts) estimate.update(counts, period += 4);
   CHECK(estimate.counts_per_period == doctest::Approx(0.25f));
   for (std::uint32_t silent = 1; silent < 1'000; ++silent) {
-    control::update(estimate, 199, ++period);
+    estimate.update(199, ++period);
     CHECK(estimate.counts_per_period <= 0.25001f);
     CHECK(estimate.counts_per_period <= 1.0625f / static_cast<float>(silent) + 1e-6f);
     CHECK(estimate.counts_per_period > 0.0f);
@@ -149,7 +149,7 @@ TEST_CASE("between edges the value rests: it changes in few of the periods") {
   for (std::uint32_t period = 1; period <= periods; ++period) {
     // In half a second the speed decreases from 500 to 250 counts per second, and then the motion stops.
     const double t = std::min(period / rate_Hz, 0.5);
-    control::update(estimate, counts_at(500 * t - 250 * t * t), period);
+    estimate.update(counts_at(500 * t - 250 * t * t), period);
     if (estimate.counts_per_period != before) ++changes;
     before = estimate.counts_per_period;
   }
@@ -159,10 +159,10 @@ TEST_CASE("between edges the value rests: it changes in few of the periods") {
 
 TEST_CASE("the period counter may wrap") {
   SpeedEstimate estimate;
-  control::start(estimate, 0, 0xFFFFFF00u);
+  estimate.start(0, 0xFFFFFF00u);
   std::uint32_t period = 0xFFFFFF00u;
   for (std::int32_t counts = 1; counts < 100; ++counts) {
-    control::update(estimate, counts, period += 5);
+    estimate.update(counts, period += 5);
     if (counts > 2) CHECK(estimate.counts_per_period == doctest::Approx(0.2f));
   }
 }
@@ -172,7 +172,7 @@ TEST_CASE("lost or garbled counts give numbers, not nonsense") {
   std::int32_t counts = 0;
   for (std::uint32_t period = 1; period < 2'000; ++period) {
     counts += period % 97 == 0 ? 30'000 : 1;
-    control::update(estimate, counts, period);
+    estimate.update(counts, period);
     CHECK(estimate.counts_per_period >= 0.0f);
     CHECK(estimate.counts_per_period <= 30'001.0f);
   }

@@ -11,7 +11,6 @@ namespace {
 using namespace inkwell;
 using control::analog_supply;
 using control::AnalogSupply;
-using control::is_off;
 
 constexpr float nominal_V = 3.3f;
 constexpr int never = 1'000, noticed = 13;
@@ -24,7 +23,7 @@ std::uint16_t counts_of(float reference_V, float analog_supply_V) {
 int readings_until_fault(float analog_supply_V, float true_V, std::uint16_t calibrated_counts) {
   AnalogSupply supply = analog_supply(calibrated_counts);
   for (int reading = 1; reading < never; ++reading)
-    if (is_off(supply, counts_of(true_V, analog_supply_V))) return reading;
+    if (supply.is_off(counts_of(true_V, analog_supply_V))) return reading;
   return never;
 }
 
@@ -63,19 +62,19 @@ TEST_CASE("a reference that reads nothing, or all there is, is off") {
 TEST_CASE("the reading of the reference gives VDDA") {
   const AnalogSupply supply = analog_supply(counts_of(1.22f, nominal_V));
   for (const float analog_V : {3.0f, 3.3f, 3.5f})
-    CHECK(control::analog_supply_V(supply, counts_of(1.22f, analog_V)) == doctest::Approx(analog_V).epsilon(0.001));
-  CHECK(control::analog_supply_V(supply, 0) == 0.0f);
+    CHECK(supply.analog_supply_V(counts_of(1.22f, analog_V)) == doctest::Approx(analog_V).epsilon(0.001));
+  CHECK(supply.analog_supply_V(0) == 0.0f);
 }
 
 TEST_CASE("twelve wrong looks in a row are borne, and a right one makes up for all before it") {
   const std::uint16_t right = counts_of(1.21f, nominal_V), wrong = counts_of(1.21f, 3.0f);
   AnalogSupply supply = analog_supply(right);
   for (int i = 0; i < 10; ++i) {
-    for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(is_off(supply, wrong));
-    CHECK_FALSE(is_off(supply, right));
+    for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(supply.is_off(wrong));
+    CHECK_FALSE(supply.is_off(right));
   }
-  for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(is_off(supply, wrong));
-  for (int reading = 0; reading < 10; ++reading) CHECK(is_off(supply, wrong));
+  for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(supply.is_off(wrong));
+  for (int reading = 0; reading < 10; ++reading) CHECK(supply.is_off(wrong));
 }
 
 }  // namespace

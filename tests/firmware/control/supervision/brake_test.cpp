@@ -13,9 +13,7 @@
 namespace {
 
 using namespace inkwell;
-using control::advance;
 using control::Brake;
-using control::shorts;
 using protocol::condition;
 using protocol::Fault;
 
@@ -24,35 +22,35 @@ constexpr float fast = 0.5f * 0.5f, slow = 0.05f * 0.05f;
 Brake begun(protocol::Conditions found) {
   Brake brake;
   brake.begin();
-  advance(brake, fast, found);
+  brake.advance(fast, found);
   return brake;
 }
 
 TEST_CASE("an arm that is let loose while it moves is braked until it is slow, and not again") {
   Brake brake = begun(condition(Fault::over_speed));
   CHECK(brake.is_on());
-  for (int i = 0; i < 100; ++i) advance(brake, fast, {});
+  for (int i = 0; i < 100; ++i) brake.advance(fast, {});
   CHECK(brake.is_on());
-  advance(brake, slow, {});
+  brake.advance(slow, {});
   CHECK_FALSE(brake.is_on());
-  advance(brake, fast, {});
+  brake.advance(fast, {});
   CHECK_FALSE(brake.is_on());
 }
 
 TEST_CASE("one that is slow coasts") {
   Brake brake;
   brake.begin();
-  advance(brake, slow, condition(Fault::host_silent));
+  brake.advance(slow, condition(Fault::host_silent));
   CHECK_FALSE(brake.is_on());
   brake.begin();
-  advance(brake, std::numeric_limits<float>::quiet_NaN(), condition(Fault::host_silent));
+  brake.advance(std::numeric_limits<float>::quiet_NaN(), condition(Fault::host_silent));
   CHECK_FALSE(brake.is_on());
 }
 
 TEST_CASE("half a second is the longest") {
   Brake brake = begun(condition(Fault::over_speed));
   int periods = 0;
-  for (; brake.is_on() && periods < 100'000; ++periods) advance(brake, fast, condition(Fault::over_speed));
+  for (; brake.is_on() && periods < 100'000; ++periods) brake.advance(fast, condition(Fault::over_speed));
   CHECK(periods >= 9'990);
   CHECK(periods <= 10'000);
 }
@@ -62,32 +60,32 @@ TEST_CASE("a motor that resists with more than the force limit lets all go, of a
   for (const Fault fault : {Fault::over_speed, Fault::force_law, Fault::host_silent, Fault::usb_gone}) {
     const float part = fault == Fault::host_silent || fault == Fault::usb_gone ? Brake::gentle_part : 1.0f;
     const Brake brake = begun(condition(fault));
-    CHECK(shorts(brake, {part * 0.999f, part * -1.999f, part * 2.999f}, limit_A));
-    CHECK_FALSE(shorts(brake, {part * -1.001f, 0.0f, 0.0f}, limit_A));
-    CHECK_FALSE(shorts(brake, {0.0f, part * 2.001f, 0.0f}, limit_A));
-    CHECK_FALSE(shorts(brake, {0.0f, 0.0f, part * -3.001f}, limit_A));
-    CHECK_FALSE(shorts(brake, {0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f}, limit_A));
+    CHECK(brake.shorts({part * 0.999f, part * -1.999f, part * 2.999f}, limit_A));
+    CHECK_FALSE(brake.shorts({part * -1.001f, 0.0f, 0.0f}, limit_A));
+    CHECK_FALSE(brake.shorts({0.0f, part * 2.001f, 0.0f}, limit_A));
+    CHECK_FALSE(brake.shorts({0.0f, 0.0f, part * -3.001f}, limit_A));
+    CHECK_FALSE(brake.shorts({0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f}, limit_A));
     Brake over = brake;
-    advance(over, slow, condition(fault));
-    CHECK_FALSE(shorts(over, {}, limit_A));
+    over.advance(slow, condition(fault));
+    CHECK_FALSE(over.shorts({}, limit_A));
   }
-  CHECK_FALSE(shorts(Brake{}, {}, limit_A));
+  CHECK_FALSE(Brake{}.shorts({}, limit_A));
 }
 
 TEST_CASE("a brake is gentle once the host was silent, until the next begins") {
   constexpr control::Triple limit_A{1.0f, 1.0f, 1.0f}, resists_A{0.5f, -0.5f, 0.5f};
   Brake brake = begun(condition(Fault::over_speed));
-  CHECK(shorts(brake, resists_A, limit_A));
-  advance(brake, fast, condition(Fault::host_silent));
-  CHECK_FALSE(shorts(brake, resists_A, limit_A));
-  advance(brake, fast, {});
-  CHECK_FALSE(shorts(brake, resists_A, limit_A));
+  CHECK(brake.shorts(resists_A, limit_A));
+  brake.advance(fast, condition(Fault::host_silent));
+  CHECK_FALSE(brake.shorts(resists_A, limit_A));
+  brake.advance(fast, {});
+  CHECK_FALSE(brake.shorts(resists_A, limit_A));
   brake.begin();
-  CHECK(shorts(brake, resists_A, limit_A));
+  CHECK(brake.shorts(resists_A, limit_A));
   // If the host was silent before the probe became too fast, the hand causes the speed and the brake is gentle.
   Brake silent = begun(condition(Fault::host_silent));
-  advance(silent, fast, condition(Fault::over_speed));
-  CHECK_FALSE(shorts(silent, resists_A, limit_A));
+  silent.advance(fast, condition(Fault::over_speed));
+  CHECK_FALSE(silent.shorts(resists_A, limit_A));
 }
 
 TEST_CASE("the limit is that of the force at the end of the longer link, by each motor's constant and gear") {
@@ -112,7 +110,7 @@ TEST_CASE("only after the faults that leave bridges, currents and speeds to be t
     CHECK_FALSE(begun(condition(fault)).is_on());
     CHECK_FALSE(begun(condition(fault) | condition(Fault::over_speed)).is_on());
     Brake brake = begun(condition(Fault::over_speed));
-    advance(brake, fast, condition(fault));
+    brake.advance(fast, condition(fault));
     CHECK_FALSE(brake.is_on());
   }
 }

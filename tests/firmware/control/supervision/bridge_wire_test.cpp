@@ -7,15 +7,13 @@ namespace {
 
 using inkwell::control::BridgePins;
 using inkwell::control::BridgeWire;
-using inkwell::control::is_shorted;
-using inkwell::control::update_wire_check;
 
 /// Returns the number of checks until detection, or 0 if the short circuit is never detected.
 int readings_until_shorted(const BridgePins& pins) {
   BridgeWire wire;
   for (int reading = 1; reading < 1'000; ++reading) {
-    update_wire_check(wire, pins);
-    if (is_shorted(wire)) return reading;
+    wire.update(pins);
+    if (wire.is_shorted()) return reading;
   }
   return 0;
 }
@@ -60,14 +58,14 @@ TEST_CASE("one wrong look is borne, and a right one makes up for all before it")
   constexpr BridgePins healthy{}, wrong{.enable_is_high = true};
   BridgeWire wire;
   for (int i = 0; i < 100; ++i) {
-    update_wire_check(wire, wrong);
-    CHECK_FALSE(is_shorted(wire));
-    update_wire_check(wire, healthy);
+    wire.update(wrong);
+    CHECK_FALSE(wire.is_shorted());
+    wire.update(healthy);
   }
-  for (int i = 0; i < 2; ++i) update_wire_check(wire, wrong);
-  CHECK(is_shorted(wire));
-  update_wire_check(wire, healthy);
-  CHECK_FALSE(is_shorted(wire));
+  for (int i = 0; i < 2; ++i) wire.update(wrong);
+  CHECK(wire.is_shorted());
+  wire.update(healthy);
+  CHECK_FALSE(wire.is_shorted());
 }
 
 }  // namespace

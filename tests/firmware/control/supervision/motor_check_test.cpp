@@ -15,7 +15,6 @@ using control::MotorCheck;
 using control::MotorModel;
 using control::Resistance;
 using control::Triple;
-using control::update_motor_check;
 using protocol::Fault;
 
 constexpr MotorModel model{{2.0f, 4.0f, 8.0f}, {0.3f, -0.2f, 0.1f}};
@@ -35,9 +34,8 @@ int checks_until_fault(std::size_t motor, float voltage_V, float current_A, floa
   currents_A[motor] = current_A;
   speeds_rad_per_s[motor] = joint_speed_rad_per_s;
   for (int check = 1; check < never; ++check) {
-    turn_to(motor_check, motor, voltage_V, loss);
-    if (!update_motor_check(motor_check, currents_A, speeds_rad_per_s, all(resistance), model.back_emf_Vs_per_rad))
-      return check;
+    motor_check.turn_to(motor, voltage_V, loss);
+    if (!motor_check.update(currents_A, speeds_rad_per_s, all(resistance), model.back_emf_Vs_per_rad)) return check;
   }
   return never;
 }
@@ -136,8 +134,8 @@ TEST_CASE("a current that turns round from one limit to the other in no time is 
   MotorCheck motor_check;
   const Triple still{};
   const auto check = [&](float voltage_V, float current_A) {
-    turn_to(motor_check, 0, voltage_V, {0.43f, 0.43f});
-    return update_motor_check(motor_check, {current_A, 0.0f, 0.0f}, still, all_unmeasured, model.back_emf_Vs_per_rad);
+    motor_check.turn_to(0, voltage_V, {0.43f, 0.43f});
+    return motor_check.update({current_A, 0.0f, 0.0f}, still, all_unmeasured, model.back_emf_Vs_per_rad);
   };
   for (int turn = 0; turn < 1'000; ++turn) {
     const float sign = turn % 2 == 0 ? 1.0f : -1.0f;
@@ -150,8 +148,8 @@ TEST_CASE("each motor has its own sum") {
   MotorCheck motor_check;
   for (int check = 0; check < 300; ++check) {
     const std::size_t motor = static_cast<std::size_t>(check % 3);
-    turn_to(motor_check, motor, motor == 2 ? 6.0f : 0.0f, {});
-    if (update_motor_check(motor_check, {}, {}, all_unmeasured, model.back_emf_Vs_per_rad)) continue;
+    motor_check.turn_to(motor, motor == 2 ? 6.0f : 0.0f, {});
+    if (motor_check.update({}, {}, all_unmeasured, model.back_emf_Vs_per_rad)) continue;
     CHECK(motor == 2);
     CHECK(motor_check.beyond_V[0] == 0.0f);
     CHECK(motor_check.beyond_V[1] == 0.0f);

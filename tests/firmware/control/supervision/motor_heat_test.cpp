@@ -32,7 +32,7 @@ void run(MotorHeat& motors, const Triple& current_A, const control::HeatScale& s
                                                                                     // motors
   for (int period = 0; period < periods; ++period) {
     const auto motor = static_cast<std::size_t>(period % 3);
-    control::update_heat(motors, motor, current_A[motor], scale);
+    motors.update(motor, current_A[motor], scale);
   }
 }
 

@@ -10,7 +10,6 @@ namespace {
 
 using namespace inkwell;
 using control::periods_in;
-using control::ripples;
 using control::SupplyRipple;
 
 constexpr float nominal_V = 18.0f, step_V = 0.01f;
@@ -26,7 +25,7 @@ template <class Supply>
 std::uint32_t periods_until_ripple(Supply supply_V, std::uint32_t begin = 0, std::uint32_t every = 1) {
   SupplyRipple ripple = ripple_check;
   for (std::uint32_t period = 0; period < never; period += every)
-    if (ripples(ripple, counts_of(supply_V(static_cast<float>(period) * protocol::servo_period_s)), begin + period))
+    if (ripple.ripples(counts_of(supply_V(static_cast<float>(period) * protocol::servo_period_s)), begin + period))
       return period;
   return never;
 }
@@ -72,13 +71,13 @@ TEST_CASE("ripple lasts as long as the supply swings, and is over a tenth of a s
   std::uint32_t period = 0;
   for (; period < periods_in(0.5f); ++period) {
     const bool found =
-        ripples(ripple, counts_of(swing(3.0f, 100.0f)(static_cast<float>(period) * protocol::servo_period_s)), period);
+        ripple.ripples(counts_of(swing(3.0f, 100.0f)(static_cast<float>(period) * protocol::servo_period_s)), period);
     if (period > periods_in(0.05f)) CHECK(found);
   }
-  for (; period < periods_in(0.55f); ++period) ripples(ripple, counts_of(nominal_V), period);
-  CHECK(ripples(ripple, counts_of(nominal_V), period));
-  for (; period < periods_in(0.601f); ++period) ripples(ripple, counts_of(nominal_V), period);
-  CHECK_FALSE(ripples(ripple, counts_of(nominal_V), period));
+  for (; period < periods_in(0.55f); ++period) ripple.ripples(counts_of(nominal_V), period);
+  CHECK(ripple.ripples(counts_of(nominal_V), period));
+  for (; period < periods_in(0.601f); ++period) ripple.ripples(counts_of(nominal_V), period);
+  CHECK_FALSE(ripple.ripples(counts_of(nominal_V), period));
 }
 
 TEST_CASE("looks that are skipped, and a count of periods that wraps, change nothing") {
@@ -89,9 +88,9 @@ TEST_CASE("looks that are skipped, and a count of periods that wraps, change not
   // The mean follows the supply with a time constant of `within_periods`.
   for (const std::uint32_t every : {1u, 7u}) {
     SupplyRipple ripple = ripple_check;
-    ripples(ripple, counts_of(12.0f), 0);
+    ripple.ripples(counts_of(12.0f), 0);
     for (std::uint32_t period = every; period <= SupplyRipple::within_periods; period += every)
-      ripples(ripple, counts_of(nominal_V), period);
+      ripple.ripples(counts_of(nominal_V), period);
     const auto mean_counts = static_cast<float>(ripple.mean_counts) / SupplyRipple::mean_periods;
     CHECK(mean_counts * step_V == doctest::Approx(nominal_V - 6.0f / std::numbers::e_v<float>).epsilon(0.01));
   }
