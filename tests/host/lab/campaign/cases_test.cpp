@@ -195,7 +195,8 @@ TEST_CASE("a file contains names, and names that this version does not know are 
   }
   CHECK(parse_result(text) == result);
   for (const auto& [known, unknown, complaint] :
-       {std::tuple{"motor_open:1", "motor_open\\u001B[2J:1", "the fault `motor_open?[2J:1`, which this version does not"},
+       {std::tuple{"motor_open:1", "motor_open\\u001B[2J:1",
+                   "the fault `motor_open?[2J:1`, which this version does not"},
         {"\"wall\"", "\"floor\"", "the situation `floor`, which this version does not"},
         {"\"current_jump\"", "\"current_leap\"", "the firmware has no fault `current_leap`"},
         {"\"restart\"", "\"nap\"", "the firmware has no fault `nap`"},
