@@ -29,7 +29,7 @@ struct CurrentOffsets {
   std::uint32_t periods = 0;
   bool plausible = false;
 
-  /// Adds one reading. The offsets and their plausibility are valid once measured() is true.
+  /// Adds one reading. The offsets and their plausibility are valid when measured() returns true.
   [[gnu::cold]] void measure(const Triple& current_A);
   bool measured() const { return periods >= duration_periods; }
 };

@@ -27,8 +27,8 @@ struct EnergyReserve {
   float left_J = 0.0f;
   Vector3 position_m;  ///< position of the probe in the previous period
 
-  /// Advances by one control period. Subtracts the work of the previous period's force, `felt_N`, on the path to
-  /// `probe_m`. Adds the energy that may be delivered in each period.
+  /// Advances by one control period. Subtracts the work of the previous force `felt_N` on the path to `probe_m`.
+  /// Adds `refill_J_per_period`.
   void update(const Vector3& felt_N, const Vector3& probe_m, const EnergyLimits& limits);
 
   /// Returns the remaining energy divided by the energy below which the force is reduced.

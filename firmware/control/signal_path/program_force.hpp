@@ -38,12 +38,12 @@ struct ProgramForce {
   std::uint32_t interval_periods = 1;
   protocol::ForceMode mode = protocol::ForceMode::none;
 
-  /// Starts a linear transition to a new report. The rate limit may extend the transition beyond the
-  /// program's interval. A force above the limit is reduced to the limit and keeps its direction. Returns true if the
-  /// report arrived more than 1 ms late.
+  /// Starts a linear transition to a new report. The rate limit may extend the transition beyond the program's
+  /// interval. A force above the limit is reduced to the limit and keeps its direction. Returns true if the report
+  /// arrived more than 1 ms late.
   [[gnu::cold]] bool set_target(const ForceTarget& target, const ProgramForceLimits& limits);
 
-  /// Advances by one control period. Without new reports, the force fades and the program is no longer a force source.
+  /// Advances by one control period. Without new reports, the force fades and the program stops being a force source.
   void advance(const ProgramForceLimits& limits);
 
   bool is_driven() const { return mode != protocol::ForceMode::none; }

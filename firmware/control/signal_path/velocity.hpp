@@ -48,7 +48,7 @@ struct SpeedEstimate {
   std::int32_t direction = 0;  ///< direction of the last edge: +1, -1, or 0 before the first edge
   float counts_per_period = 0.0f;
 
-  /// Starts a new estimate with a speed of zero at these counts.
+  /// Sets the first counts of a new estimate, whose speed is zero.
   constexpr void start(std::int32_t now_counts, std::uint32_t period) {
     counts = now_counts;
     head.period = period;
@@ -61,7 +61,8 @@ struct SpeedEstimate {
 
  private:
   void remember(const EncoderEdge& edge);
-  /// Limits the speed to one count divided by the time since the last edge. Each period without an edge calls it.
+  /// Limits the speed to one count divided by the time since the last edge. Call this function in each
+  /// period without an edge.
   void decay(std::uint32_t silent_periods);
 };
 

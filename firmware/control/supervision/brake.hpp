@@ -31,12 +31,12 @@ struct Brake {
 
   /// Starts braking after a fault has switched the force off.
   void begin() { *this = {duration_maximum_periods, false}; }
-  /// Call this function once per control period. `speed_squared_m2_per_s2` is
-  /// the squared probe speed. `found` comes from the supervisor.
+  /// Call this function once per control period. `speed_squared_m2_per_s2` is the squared probe speed. `found` comes
+  /// from the supervisor.
   void advance(float speed_squared_m2_per_s2, protocol::Conditions found);
   bool is_on() const { return remaining_periods != 0; }
-  /// Returns true if the motors are shorted in this period. `limit_A` is Limits::brake_A. A NaN current releases
-  /// the motors.
+  /// Returns true if the motors are shorted in this period. `limit_A` is Limits::brake_A. A NaN current releases the
+  /// motors.
   bool shorts(const Triple& current_A, const Triple& limit_A) const;
 };
 

@@ -45,8 +45,8 @@ struct StuckEncoder {
   unsigned changes = 0;  ///< number of current changes in this standstill
 
   /// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current
-  /// changes of more than `moving_A` while the encoder was stationary. If `held` is true, the joint may be blocked, and
-  /// the standstill time restarts.
+  /// changes of more than `moving_A` while the encoder was stationary. If `held` is true, the standstill time
+  /// restarts.
   bool is_stuck(std::int32_t now_counts, float now_A, std::uint32_t now_periods, bool held, float moving_A) {
     current_A += weight * (now_A - current_A);
     const std::uint32_t away =

@@ -47,7 +47,8 @@ std::array<std::byte, 5> command(std::uint8_t code, std::uint32_t address) {
           std::byte(address >> 24)};
 }
 
-/// Reads the number at the beginning of the text and removes it from the text. Returns false if there is no number.
+/// Reads the number at the beginning of the text and removes it from the text. Returns false if the text does not begin
+/// with a number.
 bool take_number(std::string_view& text, std::uint32_t& number, int base) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number, base);
   if (code != std::errc{}) return false;

@@ -16,6 +16,7 @@ bool is_interface_name(std::string_view name);
 /// Returns the error sentence for an invalid name.
 std::string no_interface_name(std::string_view name);
 
+/// openocd reads these bytes instead of the user's file, and therefore writes nothing else.
 std::string intel_hex(const Image& image);
 
 /// Returns the arguments of openocd that copy the first bytes of the flash to `installed_file`. The firmware continues

@@ -1,4 +1,4 @@
-// First connection: checks all wires and the directions of the encoders.
+// First connection: checks all parts and the directions of the encoders.
 #include "host/client/guides/guides.hpp"
 
 #include <fmt/format.h>

@@ -31,7 +31,8 @@ struct MotorCircuit {
 };
 
 /// `ripple_A` is half the peak-to-peak current ripple. Below `ripple_A` the dead-time loss is proportional to the
-/// current. Throws device::Error if there is no pulse or no current, or if the currents do not match the circuit.
+/// current. Throws device::Error if the samples contain no pulse or no current, or if the currents contradict the
+/// circuit.
 MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_period_s, double ripple_A);
 
 struct SuggestedGains {

@@ -8,7 +8,7 @@
 
 namespace inkwell::local {
 
-/// Returns true if no other user except root can remove or rename this user's files in the folder.
+/// Returns true if the folder exists and no other user except root can remove or rename this user's files there.
 inline bool only_owner_changes(const std::filesystem::path& folder) {
   struct stat status {};
   if (::stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) return false;

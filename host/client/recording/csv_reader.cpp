@@ -18,7 +18,7 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// Returns std::nullopt for numbers out of range.
+/// Returns std::nullopt if the text is not a whole number or if the number is out of range.
 template <class Whole>
 std::optional<Whole> whole_number(std::string_view text) {
   Whole value = 0;

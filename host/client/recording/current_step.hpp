@@ -14,7 +14,7 @@ struct CurrentStep {
 };
 
 /// Evaluates the first pulse in the reference. Both arguments contain one current in ampere for each control period.
-/// Throws device::Error if there is no pulse or if the current never rises.
+/// Throws device::Error if the recording contains no pulse or if the current never rises.
 CurrentStep current_step(const std::vector<float>& reference_A, const std::vector<float>& current_A);
 
 }  // namespace inkwell::recording

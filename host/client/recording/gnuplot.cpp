@@ -22,7 +22,7 @@ set xlabel 'time  /  s' textcolor rgb ink
 set style fill transparent solid 0.22 noborder
 )";
 
-/// Replaces characters with a special meaning in gnuplot.
+/// Returns true if the character has no special meaning in quoted texts of gnuplot.
 bool is_harmless(char c) {
   constexpr std::string_view marks = " _.,:;()/+-=<>";
   const bool is_utf8 = (static_cast<unsigned char>(c) & 0x80u) != 0;
