@@ -35,8 +35,8 @@ class KnownRows {
 
   std::size_t size() const { return own + added_.size(); }
   /// Returns a row without a name if the index is out of range.
-  const Info& operator[](std::size_t place) const {
-    return place < own ? (*table_)[place] : place < size() ? added_[place - own] : nameless_row<Info>;
+  const Info& operator[](std::size_t index) const {
+    return index < own ? (*table_)[index] : index < size() ? added_[index - own] : nameless_row<Info>;
   }
 
   class Iterator {
@@ -47,19 +47,19 @@ class KnownRows {
     using pointer = const Info*;
     using reference = const Info&;
 
-    Iterator(const KnownRows& rows, std::size_t place) : rows_(&rows), place_(place) {}
-    const Info& operator*() const { return (*rows_)[place_]; }
-    const Info* operator->() const { return &(*rows_)[place_]; }
+    Iterator(const KnownRows& rows, std::size_t index) : rows_(&rows), index_(index) {}
+    const Info& operator*() const { return (*rows_)[index_]; }
+    const Info* operator->() const { return &(*rows_)[index_]; }
     Iterator& operator++() {
-      ++place_;
+      ++index_;
       return *this;
     }
-    Iterator operator++(int) { return {*rows_, place_++}; }
+    Iterator operator++(int) { return {*rows_, index_++}; }
     bool operator==(const Iterator&) const = default;
 
    private:
     const KnownRows* rows_;
-    std::size_t place_;
+    std::size_t index_;
   };
   Iterator begin() const { return {*this, 0}; }
   Iterator end() const { return {*this, size()}; }

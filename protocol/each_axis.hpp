@@ -15,7 +15,7 @@ namespace detail {
 
 /// Returns the position of the axis in a name: a separate digit 1 to 3 or letter x to z. Returns npos if the name has
 /// no axis.
-constexpr std::size_t axis_place(std::string_view name) {
+constexpr std::size_t axis_position(std::string_view name) {
   for (std::size_t i = 1; i < name.size(); ++i) {
     const bool alone = name[i - 1] == '_' && (i + 1 == name.size() || name[i + 1] == '_');
     if (alone && ((name[i] >= '1' && name[i] <= '3') || (name[i] >= 'x' && name[i] <= 'z'))) return i;
@@ -25,10 +25,10 @@ constexpr std::size_t axis_place(std::string_view name) {
 
 /// Returns true if the axis of `name` is `distance` after the axis of `other` and the names are otherwise equal.
 constexpr bool is_named_after(std::string_view name, std::string_view other, int distance) {
-  const std::size_t place = axis_place(other);
-  return place != std::string_view::npos && name.size() == other.size() && axis_place(name) == place &&
-         name[place] == other[place] + distance && name.substr(0, place) == other.substr(0, place) &&
-         name.substr(place + 1) == other.substr(place + 1);
+  const std::size_t position = axis_position(other);
+  return position != std::string_view::npos && name.size() == other.size() && axis_position(name) == position &&
+         name[position] == other[position] + distance && name.substr(0, position) == other.substr(0, position) &&
+         name.substr(position + 1) == other.substr(position + 1);
 }
 
 // A call of one of these functions is a compiler error with the function name.

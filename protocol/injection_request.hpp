@@ -30,26 +30,26 @@ inline constexpr std::array<std::string_view, 6> legs{"1A", "1B", "2A", "2B", "3
 }  // namespace detail
 
 /// Returns the location names, or an empty list for a kind with many locations.
-constexpr std::span<const std::string_view> names_of_places(InjectionPlace place) {
-  switch (place) {
-    case InjectionPlace::motor:
-    case InjectionPlace::converter: return detail::one_to_three;
-    case InjectionPlace::leg: return detail::legs;
+constexpr std::span<const std::string_view> location_names(InjectionLocation location) {
+  switch (location) {
+    case InjectionLocation::motor:
+    case InjectionLocation::converter: return detail::one_to_three;
+    case InjectionLocation::leg: return detail::legs;
     default: return {};
   }
 }
 
 /// Describes the required location for error messages. The result is empty if the fault needs no location.
-constexpr std::string_view wanted_place(InjectionPlace place) {
-  switch (place) {
-    case InjectionPlace::motor: return "the motor: 1, 2 or 3";
-    case InjectionPlace::leg: return "the half bridge: 1A, 1B, 2A, 2B, 3A or 3B";
-    case InjectionPlace::wire: return "the wire: a pin, such as PA0, or encoders[0].a";
-    case InjectionPlace::wires: return "two wires, such as encoders[0].a+encoders[0].b";
-    case InjectionPlace::exception: return "the exception: 16 is interrupt 0";
-    case InjectionPlace::converter: return "the converter: 1, 2 or 3";
-    case InjectionPlace::none:
-    case InjectionPlace::address: break;
+constexpr std::string_view required_location(InjectionLocation location) {
+  switch (location) {
+    case InjectionLocation::motor: return "the motor: 1, 2 or 3";
+    case InjectionLocation::leg: return "the half bridge: 1A, 1B, 2A, 2B, 3A or 3B";
+    case InjectionLocation::wire: return "the wire: a pin, such as PA0, or encoders[0].a";
+    case InjectionLocation::wires: return "two wires, such as encoders[0].a+encoders[0].b";
+    case InjectionLocation::exception: return "the exception: 16 is interrupt 0";
+    case InjectionLocation::converter: return "the converter: 1, 2 or 3";
+    case InjectionLocation::none:
+    case InjectionLocation::address: break;
   }
   return "";
 }
@@ -58,11 +58,11 @@ constexpr std::string_view wanted_place(InjectionPlace place) {
 inline std::string help_of(const InjectionInfo& row) {
   constexpr std::string_view figure = "{wire_spike_us}";
   const std::string_view text = row.help;
-  const auto place = text.find(figure);
-  if (place == std::string_view::npos) return std::string(text);
-  std::string help(text.substr(0, place));
+  const auto begin = text.find(figure);
+  if (begin == std::string_view::npos) return std::string(text);
+  std::string help(text.substr(0, begin));
   help += std::to_string(static_cast<int>(1e6 * wire_spike_s + 0.5));
-  help += text.substr(place + figure.size());
+  help += text.substr(begin + figure.size());
   return help;
 }
 

@@ -13,7 +13,7 @@ namespace inkwell::protocol {
 enum class InjectionPart : std::uint8_t { wires, encoders, shunts, motors, bridges, supply, clocks, usb, core, memory };
 
 /// Kind of location at which a fault is injected.
-enum class InjectionPlace : std::uint8_t {
+enum class InjectionLocation : std::uint8_t {
   none,       ///< only one location exists
   motor,      ///< 1 to 3: the motor, its encoder and its shunt amplifier
   leg,        ///< half bridge 1A to 3B: motor number, and A or B for terminal + or -
@@ -29,7 +29,7 @@ inline constexpr double wire_spike_s = 2e-6;
 struct InjectionInfo {
   std::string_view name;
   InjectionPart part;
-  InjectionPlace place;
+  InjectionLocation location;
   std::string_view unit;
   double minimum, maximum, otherwise;
   const char* help;

@@ -52,8 +52,8 @@ inline constexpr std::uint16_t force_law_first_id = 1000;
 inline KnownRows<ParameterInfo, parameter_count> known_parameters() { return KnownRows(parameter_table); }
 
 constexpr const ParameterInfo& info(Parameter parameter) {
-  const auto place = static_cast<std::size_t>(parameter);
-  return place < parameter_count ? parameter_table[place] : known_parameters()[place];
+  const auto index = static_cast<std::size_t>(parameter);
+  return index < parameter_count ? parameter_table[index] : known_parameters()[index];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
 constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {

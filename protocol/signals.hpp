@@ -52,8 +52,8 @@ static_assert(signal_count + force_law_signals_maximum <= 256, "a signal's id ha
 inline KnownRows<SignalInfo, signal_count> known_signals() { return KnownRows(signal_table); }
 
 constexpr const SignalInfo& info(Signal signal) {
-  const auto place = static_cast<std::size_t>(signal);
-  return place < signal_count ? signal_table[place] : known_signals()[place];
+  const auto index = static_cast<std::size_t>(signal);
+  return index < signal_count ? signal_table[index] : known_signals()[index];
 }
 constexpr std::size_t row_count(Signal) { return signal_count; }
 constexpr bool alike(const SignalInfo& a, const SignalInfo& b) { return a.unit == b.unit && a.wire == b.wire; }

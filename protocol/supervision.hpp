@@ -135,7 +135,7 @@ static_assert(condition_table.size() <= 32);
 namespace detail {
 /// Index of each fault code in condition_table. The compiler does not evaluate a search in a long table at compile
 /// time.
-inline constexpr auto places = []() {
+inline constexpr auto indices = []() {
   std::array<std::uint8_t, fault_code_end> result{};
   result.fill(static_cast<std::uint8_t>(condition_table.size()));
   for (std::size_t i = 0; i < condition_table.size(); ++i)
@@ -145,13 +145,13 @@ inline constexpr auto places = []() {
 }  // namespace detail
 
 /// Returns the index of a fault in condition_table.
-constexpr std::size_t place_of(Fault fault) {
+constexpr std::size_t index_of(Fault fault) {
   const auto code = static_cast<std::size_t>(fault);
-  return code < detail::places.size() ? detail::places[code] : condition_table.size();
+  return code < detail::indices.size() ? detail::indices[code] : condition_table.size();
 }
-constexpr Conditions condition(Fault fault) { return Conditions(1u << place_of(fault)); }
+constexpr Conditions condition(Fault fault) { return Conditions(1u << index_of(fault)); }
 constexpr Conditions condition(Fault fault, bool is_found) {
-  return Conditions(static_cast<std::uint32_t>(is_found) << place_of(fault));
+  return Conditions(static_cast<std::uint32_t>(is_found) << index_of(fault));
 }
 
 /// Returns the set of rows for which `is_so` returns true.

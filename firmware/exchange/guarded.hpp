@@ -33,7 +33,7 @@ class Guarded {
     value_ = value;
     seal();
   }
-  /// Allows changes in place. Call seal() after the last change.
+  /// Allows direct changes. Call seal() after the last change.
   T& open() { return value_; }
   void seal() { sum_ = sum_of(value_); }
 

@@ -28,12 +28,12 @@ class Links(unittest.TestCase):
                 if re.match(r"[a-z]+:", link):
                     continue
                 links += 1
-                path, _, place = link.partition("#")
+                path, _, fragment = link.partition("#")
                 target = (page.parent / path).resolve() if path else page
                 with self.subTest(page=page.name, link=link):
                     self.assertTrue(target.exists())
-                    if place and target.suffix == ".md":
-                        self.assertIn(place, [anchor(heading) for heading in HEADING.findall(target.read_text())])
+                    if fragment and target.suffix == ".md":
+                        self.assertIn(fragment, [anchor(heading) for heading in HEADING.findall(target.read_text())])
         self.assertGreater(links, 50)
 
 

@@ -107,7 +107,7 @@ TEST_CASE("a device is opened once, by any name, and may be opened again after i
   CHECK(only_error() == HD_BAD_HANDLE);
 }
 
-TEST_CASE("frames: begun once, ended once, and the only place to set something") {
+TEST_CASE("frames: begun once, ended once, and required to set something") {
   Held held;
   const double none[3]{};
   int buttons = 0;
@@ -152,7 +152,7 @@ TEST_CASE("frames: begun once, ended once, and the only place to set something")
   CHECK(hdGetError().errorCode == HD_ILLEGAL_BEGIN);
 }
 
-TEST_CASE("what a frame sees: the stylus's place, attitude and switches, in HDAPI's units") {
+TEST_CASE("what a frame sees: the stylus's position, attitude and switches, in HDAPI's units") {
   Held held;
   double position_mm[3], transform[16], last_mm[3];
   float position_float_mm[3];

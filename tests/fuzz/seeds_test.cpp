@@ -31,7 +31,6 @@ TEST_CASE("every target has its row on the page of what is fed") {
     CHECK(page.find("\n| `" + std::string(target.name) + "` | ") != std::string::npos);
   }
   std::size_t rows = 0;
-  for (std::size_t place = page.find("\n| `"); place != std::string::npos; place = page.find("\n| `", place + 1))
-    ++rows;
+  for (std::size_t row = page.find("\n| `"); row != std::string::npos; row = page.find("\n| `", row + 1)) ++rows;
   CHECK(rows == fuzz::targets().size());
 }

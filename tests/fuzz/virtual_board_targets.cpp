@@ -27,7 +27,7 @@ using nlohmann::json;
 using namespace virtual_board;
 
 void check_vector(const Vector3& vector) {
-  if (!vector.allFinite()) throw std::logic_error("a place is nowhere");
+  if (!vector.allFinite()) throw std::logic_error("a vector is not finite");
 }
 
 void check_pin(const PinName& pin) {

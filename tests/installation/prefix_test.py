@@ -123,8 +123,8 @@ class Programs(unittest.TestCase):
                    env=environment)
         self.assertIn(f"\n{PREFIX}/lib/inkwell/dropins\n", told)
         for library in ("libHD.so.3.4", "libinkwell.so.1"):
-            [place] = re.findall(rf"{re.escape(library)} => (\S+)", told)
-            self.assertTrue(pathlib.Path(place).resolve().is_relative_to(PREFIX), place)
+            [path] = re.findall(rf"{re.escape(library)} => (\S+)", told)
+            self.assertTrue(pathlib.Path(path).resolve().is_relative_to(PREFIX), path)
 
 
 class OutsideProject(unittest.TestCase):

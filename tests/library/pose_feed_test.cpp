@@ -82,7 +82,7 @@ TEST_CASE("a force that goes off against the program's will is lost, and the cau
     board.is(INKWELL_STARTING);
     CHECK(contains(cause_of_lost_force(board.poses), "restarted"));
   }
-  SUBCASE("with the place of the arm") {
+  SUBCASE("with the reference of the arm") {
     board.is(INKWELL_UNREFERENCED);
     CHECK(contains(cause_of_lost_force(board.poses), "inkwell"));
   }

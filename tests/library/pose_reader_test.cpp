@@ -11,7 +11,7 @@
 namespace inkwell::tests {
 namespace {
 
-TEST_CASE("the velocity is that of the way, and nothing where no way leads from one place to the next") {
+TEST_CASE("the velocity is that of the way, and nothing where no way leads from one position to the next") {
   const control::Arm geometry = control::prepare(protocol::default_parameters()).arm;
   library::PoseReader reader;
   device::Pose report{};

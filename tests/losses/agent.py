@@ -207,18 +207,18 @@ class HdPhantom:
         self.require(self.library.hdPhantomOpen(0))
 
     def pose(self):
-        place = [ctypes.c_double(math.nan) for _ in range(3)]
+        position = [ctypes.c_double(math.nan) for _ in range(3)]
         turn = [ctypes.c_double(math.nan) for _ in range(9)]
         result, turned = 0, -1
         for _ in range(3):  # a loss may begin or end between the two calls
-            result = self.library.hdPhantomGetPosition(0, *map(ctypes.byref, place))
+            result = self.library.hdPhantomGetPosition(0, *map(ctypes.byref, position))
             turned = self.library.hdPhantomGetRotation(0, *map(ctypes.byref, turn))
             if (result < 0) == (turned < 0):
                 break
         assert (result < 0) == (turned < 0)
         assert abs(math.hypot(*(each.value for each in turn[:3])) - 1) < 1e-3, [each.value for each in turn]
-        self.require(result, place[1].value)
-        return place[1].value
+        self.require(result, position[1].value)
+        return position[1].value
 
     def push(self, force_N):
         force, none = ctypes.c_double(force_N), ctypes.c_double(0)

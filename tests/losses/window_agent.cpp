@@ -22,12 +22,12 @@ using namespace std::chrono_literals;
 
 std::optional<window::DeviceDesk> desk;
 
-std::string shown_place(const window::DeviceView& view) {
+std::string shown_position(const window::DeviceView& view) {
   return view.pose ? std::to_string(view.pose->position_m[0]) : "none";
 }
 
 [[noreturn]] void fail(const window::DeviceView& view, const std::string& sentence) {
-  throw std::runtime_error(shown_place(view) + " " + sentence);
+  throw std::runtime_error(shown_position(view) + " " + sentence);
 }
 
 /// Throws the displayed message if the window shows no current pose.
@@ -79,8 +79,8 @@ void carry_out(std::istringstream& words) {
   } else if (name == "enable") {
     enable();
   } else if (name == "pose") {
-    const auto place = shown_place(connected_view());
-    std::cout << "ok " << place << std::endl;
+    const auto position = shown_position(connected_view());
+    std::cout << "ok " << position << std::endl;
     return;
   } else if (name == "push") {
     std::this_thread::sleep_for(30ms);

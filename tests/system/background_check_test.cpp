@@ -78,7 +78,7 @@ TEST_CASE("a supply that swings by three volts is noticed within 50 ms, one that
   check_clears_when_gone(rig, State::ready);
 }
 
-TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, and voids the place of the arm") {
+TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, and voids the reference") {
   const std::array<std::string, 6> wires{"encoders[0].a", "encoders[1].b", "encoders[2].a",
                                          "encoders[0].b", "encoders[1].a", "encoders[2].b"};
   constexpr std::array faults{"wire_open", "wire_low", "wire_high", "wire_frozen"};
@@ -104,7 +104,7 @@ TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, an
   }
 }
 
-TEST_CASE("without the force a dead wire of an encoder is noticed too, once the place of the arm is known") {
+TEST_CASE("without the force a dead wire of an encoder is noticed too, once the arm is referenced") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.take_to(free_point_m);

@@ -95,7 +95,7 @@ TEST_CASE("the black box of a supply that fails shows how it fell, when the brid
   CHECK(rig.device->black_box().fault == Fault::none);
 }
 
-TEST_CASE("a processor fault leaves the rows before it and the place of the crash, over every reset that follows") {
+TEST_CASE("a processor fault leaves the rows before it and the address of the crash, over every reset that follows") {
   BoardRig rig;
   press_into_wall(rig);
   constexpr std::uint32_t nothing_there = 0x60000000;
@@ -246,7 +246,7 @@ TEST_CASE("where a main loop hung is kept for the watchdog alone, and not if it 
   rig.control.inject({"main_loop_stalled", "", longer_s});
   rig.run(0.2);
   REQUIRE(rig.device->black_box().fault == Fault::main_loop_stalled);
-  const auto expect_no_place = [&] {
+  const auto expect_no_crash_address = [&] {
     reconnect(rig);
     rig.run(0.3);
     const auto box = rig.device->black_box();
@@ -258,12 +258,12 @@ TEST_CASE("where a main loop hung is kept for the watchdog alone, and not if it 
   rig.control.inject({"core_stalled", "", 0.04});
   rig.control.run(0.05);
   REQUIRE(watchdog_expires(rig.control) == 1);
-  expect_no_place();
+  expect_no_crash_address();
   // An external reset occurs after the main loop hangs and before the watchdog expires.
   rig.control.inject({"main_loop_stalled", "", 10.0});
   rig.control.run(longer_s);
   REQUIRE(watchdog_expires(rig.control) == 1);
   rig.control.heal_all();
   rig.control.reset();
-  expect_no_place();
+  expect_no_crash_address();
 }

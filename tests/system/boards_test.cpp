@@ -55,7 +55,7 @@ void check_currents(BoardRig& rig) {
 
 }  // namespace
 
-TEST_CASE("every board starts, passes its self-test, finds its place, and reads and shows what it is wired to") {
+TEST_CASE("every board starts, passes its self-test, finds its reference, and reads and shows what it is wired to") {
   for (const board::Facts* board : board::known_boards) {
     CAPTURE(board->name);
     auto options = stepped_board(device::SimulationMode::fast, device::CyclePricing::likely);

@@ -249,7 +249,7 @@ TEST_CASE("what an unnoticed fault gives the hand in use is measured, and for a 
   CHECK(fault_free.energy_in_use_J.value_or(0.0) > fault_free.energy_J);
 }
 
-TEST_CASE("without force nothing goes on, and the arm finds its place in the inkwell afterwards") {
+TEST_CASE("without force nothing goes on, and the arm finds its reference in the inkwell afterwards") {
   const Result result = result_of("encoder_slip:2=400 unreferenced 1");
   CHECK_FALSE(result.bridges_were_on);
   CHECK_FALSE(result.bridges_went_on);
@@ -351,15 +351,15 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   CHECK(std::filesystem::exists(directory / "page/off.svg"));
 }
 
-TEST_CASE("a place that the seed chose is told with the case") {
+TEST_CASE("a location that the seed chose is printed with the case") {
   const TemporaryDirectory directory;
   const auto c = campaign::case_named("ram_bit unreferenced 1");
   const auto run = run_program("inkwell-lab", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
   CHECK(run.exit_code == 0);
   const auto results = campaign::load_all(directory.path());
   REQUIRE(results.size() == 1);
-  CHECK(results[0].place.starts_with("0x"));
-  CHECK(run.out.find("ram_bit unreferenced 1 at " + results[0].place + ": ") != std::string::npos);
+  CHECK(results[0].location.starts_with("0x"));
+  CHECK(run.out.find("ram_bit unreferenced 1 at " + results[0].location + ": ") != std::string::npos);
 }
 
 TEST_CASE("the list of the campaign is for people and for batch systems; a case that is none is refused") {
@@ -384,8 +384,8 @@ TEST_CASE("the sample has each detection, most injected faults, and each of thre
     if (!expected.is_in_sample) continue;
     in_sample.insert(expected.detected_as);
     injected_in_sample.insert(fault);
-    if (const auto place = protocol::info(fault).place;
-        place == protocol::InjectionPlace::motor || place == protocol::InjectionPlace::leg)
+    if (const auto location = protocol::info(fault).location;
+        location == protocol::InjectionLocation::motor || location == protocol::InjectionLocation::leg)
       motors.insert(put_in.of[0]);
   }
   CHECK(in_sample == detections);

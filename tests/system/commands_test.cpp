@@ -177,7 +177,7 @@ TEST_CASE("the reference alone tells where each field of what goes over the wire
   CHECK(reference.find(fmt::format("| `scope_magic` | {} |", protocol::scope_magic)) != std::string::npos);
 }
 
-TEST_CASE("while nobody knows where the arm is, watching it shows no place; programs are told") {
+TEST_CASE("while nobody knows where the arm is, watching it shows no position; programs are told") {
   BoardAndCompanion rig;
   rig.wait_for_device();
   const auto first_line = [&](const std::vector<std::string>& more) {
@@ -212,6 +212,7 @@ TEST_CASE("the arms that are there are listed by serial number") {
   REQUIRE(listed.exit_code == 0);
   const auto json = nlohmann::json::parse(listed.out);
   REQUIRE(json.size() == 1);
+  CHECK_FALSE(json[0].at("location").get<std::string>().empty());
   CHECK(json[0].at("serial_number") == device::Device::open(*rig.board.find())->information().serial_number);
   CHECK(json[0].at("board") == "omni_driver");
   const auto lines = rig.run({"devices"}).out;

@@ -40,7 +40,7 @@ std::vector<Elf32_Shdr> read_sections(const std::string& elf) {
 
 }  // namespace
 
-FirmwareSymbol firmware_place(std::string_view name) {
+FirmwareSymbol find_symbol(std::string_view name) {
   const std::string elf = read_firmware();
   const auto sections = read_sections(elf);
   const auto symbols = std::ranges::find(sections, Elf32_Word{SHT_SYMTAB}, &Elf32_Shdr::sh_type);
@@ -59,7 +59,7 @@ FirmwareSymbol firmware_place(std::string_view name) {
 
 std::uint32_t endless_loop_address() {
   constexpr std::string_view loop = "\xBF\xF3\x4F\x8F\xFC\xE7";
-  const FirmwareSymbol waits_for_reset = firmware_place("17start_boot_loader");
+  const FirmwareSymbol waits_for_reset = find_symbol("17start_boot_loader");
   const std::string elf = read_firmware();
   const auto header = read_header<Elf32_Ehdr>(elf, 0);
   for (std::size_t i = 0; i < header.e_phnum; ++i) {

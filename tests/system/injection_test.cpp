@@ -86,7 +86,7 @@ TEST_CASE("the board tells the control period of its firmware, so that a pose's 
 TEST_CASE("the control socket refuses what is no fault with a sentence") {
   BoardRig rig;
   CHECK(refusal_of(rig.control, {.fault = "nothing"}).find("there is no fault \"nothing\"") != std::string::npos);
-  CHECK(refusal_of(rig.control, {.fault = "motor_open"}).find("motor_open needs a position") != std::string::npos);
+  CHECK(refusal_of(rig.control, {.fault = "motor_open"}).find("motor_open needs a location") != std::string::npos);
   CHECK(refusal_of(rig.control, {.fault = "motor_open", .of = "9"}).find("is not a valid motor") != std::string::npos);
   CHECK(refusal_of(rig.control, {.fault = "supply_sag", .amount = 99.0}).find("outside 0 to 18") != std::string::npos);
   CHECK(refusal_of(rig.control, {.fault = "supply_cut", .after_s = -1.0}).find("outside 0 to") != std::string::npos);

@@ -27,10 +27,10 @@ std::string text_of(std::uint32_t address) { return std::to_string(address); }
 bool is_in_fault(const device::Pose& pose) { return pose.state == State::fault; }
 
 /// Flips one bit per address while a hand presses the stylus.
-void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int bit) {
+void check_found_and_written_anew(const std::vector<std::uint32_t>& addresses, int bit) {
   BoardRig rig;
   press_into_wall(rig);
-  for (const std::uint32_t address : places)
+  for (const std::uint32_t address : addresses)
     rig.control.inject({"ram_bit", text_of(address), static_cast<double>(bit)});
   rig.run_until(is_in_fault);
   CHECK(rig.pose().fault == Fault::memory_damaged);
@@ -60,9 +60,9 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
   // The firmware does not use these locations while the hand presses. The memory check detects each error before the
   // error has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
-  const std::uint32_t places[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
-                                  firmware_symbol("remove_idle_torque"), firmware_symbol("nowhere")};
-  for (const std::uint32_t address : places) {
+  const std::uint32_t addresses[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
+                                     firmware_symbol("remove_idle_torque"), firmware_symbol("nowhere")};
+  for (const std::uint32_t address : addresses) {
     CAPTURE(address);
     check_found_and_written_anew({address}, 7);
   }

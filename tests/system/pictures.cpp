@@ -249,7 +249,7 @@ TEST_CASE("pictures: faults put into the simulation, dark and light, large and s
       rig.press_key("Down");
       rig.press_key("Down");
       rig.press_key("Return");
-      rig.wait_until("the place is asked for", [](const Sight& now) { return now.is_active("faults/place"); });
+      rig.wait_until("the location field is active", [](const Sight& now) { return now.is_active("faults/location"); });
       rig.type("9Z");
       rig.press_key("Return");
       rig.wait_until("it is refused", [](const Sight& now) { return now.says("is no leg"); });

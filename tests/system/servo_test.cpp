@@ -143,7 +143,7 @@ TEST_CASE(
     std::ptrdiff_t count = 0;
     for (const auto function : functions)
       count += std::ranges::count_if(
-          executed, [place = firmware_place(function)](std::uint32_t address) { return place.contains(address); });
+          executed, [symbol = find_symbol(function)](std::uint32_t address) { return symbol.contains(address); });
     return count;
   };
   const auto checking = instructions_in({"Controller9supervise", "Controller12check_motors"});
@@ -155,8 +155,9 @@ TEST_CASE(
   const crash::FirmwareImage image(build_directory() + "/../board/inkwell.elf");
   const auto conditioning_by = [&](std::string_view header) {
     return std::ranges::count_if(executed, [&](std::uint32_t address) {
-      const std::string place = image.source_location(address);
-      return place.find("condition_samples") != place.npos && place.find(fmt::format("({}:", header)) != place.npos;
+      const std::string location = image.source_location(address);
+      return location.find("condition_samples") != location.npos &&
+             location.find(fmt::format("({}:", header)) != location.npos;
     });
   };
   const auto jumps = conditioning_by("encoders.hpp");

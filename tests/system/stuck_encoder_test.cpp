@@ -43,7 +43,7 @@ void make_strong(BoardRig& rig) {
 
 }  // namespace
 
-TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it away, and the place of the arm with it") {
+TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it away, and the reference with it") {
   struct Pulled {
     std::string joint;
     std::array<float, 3> along;  ///< a direction in which this motor contributes much of the force
@@ -94,7 +94,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("fast motion without a force: a motor whose voltage tells that it turns takes the place of the arm away") {
+TEST_CASE("fast motion without a force: a motor whose voltage tells that it turns takes the reference away") {
   for (const std::string joint : {"1", "2", "3", "none"}) {
     CAPTURE(joint);
     const bool healthy = joint == "none";

@@ -14,9 +14,9 @@ using namespace inkwell::tests;
 
 namespace {
 
-RunningProgram board_with_uart(const std::string& place) {
+RunningProgram board_with_uart(const std::string& target) {
   return RunningProgram({build_directory() + "/virtual-board", "--elf", build_directory() + "/chip-firmware/echo.elf",
-                         "--uart", "usart1=" + place});
+                         "--uart", "usart1=" + target});
 }
 
 /// Returns the echo of `text` on an open descriptor.

@@ -97,7 +97,7 @@ TEST_CASE("the pane is worked by the keyboard alone") {
   rig.type("slip");
   rig.press_key("Down");
   rig.press_key("Return");
-  wait_for_keyboard(rig, "faults/place");
+  wait_for_keyboard(rig, "faults/location");
   rig.type("3");
   go_by_tab(rig, "faults/amount");
   rig.type("-250");
@@ -117,12 +117,12 @@ TEST_CASE("what the board refuses, or is no number, is told in a sentence") {
   rig.enter("faults/search", "motor_hot");
   rig.click("faults/motor_hot");
   rig.click("faults/Inject");
-  look_for(rig, "motor_hot needs a position; add the motor: 1, 2 or 3");
+  look_for(rig, "motor_hot needs a location; add the motor: 1, 2 or 3");
   rig.click("faults/2");
   rig.enter("faults/amount", "1,5");
   rig.click("faults/Inject");
   look_for(rig, "`1,5` is not a number");
-  CHECK_FALSE(rig.look().says("needs a position"));
+  CHECK_FALSE(rig.look().says("needs a location"));
   rig.enter("faults/amount", "400");
   rig.click("faults/Inject");
   look_for(rig, "motor_hot 400 K is outside 0 to 300");
@@ -146,7 +146,7 @@ TEST_CASE("what another program puts in and heals is seen, also what is still to
   look_for(rig, "over");
 }
 
-TEST_CASE("the same fault again takes the place of the first, and outlasts a reset") {
+TEST_CASE("the same fault again replaces the first, and outlasts a reset") {
   WindowRig rig;
   open_pane(rig);
   rig.enter("faults/search", "motor_hot");

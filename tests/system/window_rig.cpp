@@ -49,8 +49,8 @@ std::vector<std::string> display_command(const std::string& screen) {
 
 Item Sight::item(const std::string& name) const {
   if (!has(name)) throw std::runtime_error(fmt::format("{} cannot be seen in {}", name, all.dump()));
-  const json& place = all["items"][name];
-  return {place["x"], place["y"], place["width"], place["height"], place["enabled"]};
+  const json& rectangle = all["items"][name];
+  return {rectangle["x"], rectangle["y"], rectangle["width"], rectangle["height"], rectangle["enabled"]};
 }
 
 std::string Sight::with_keyboard() const {

@@ -17,9 +17,9 @@ class CheckFormat(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             for name in NEEDED:
-                for place in os.environ["PATH"].split(":"):
-                    if os.access(f"{place}/{name}", os.X_OK):
-                        (folder / name).symlink_to(f"{place}/{name}")
+                for directory in os.environ["PATH"].split(":"):
+                    if os.access(f"{directory}/{name}", os.X_OK):
+                        (folder / name).symlink_to(f"{directory}/{name}")
                         break
             for name, (version, code) in formatters.items():
                 program = folder / name.replace("_", "-")

@@ -27,9 +27,9 @@ class TestOn(unittest.TestCase):
                 subprocess.run([*git, *words], check=True)
             (tree / "not-committed").touch()
             for name in NEEDED:
-                for place in os.environ["PATH"].split(":"):
-                    if os.access(f"{place}/{name}", os.X_OK):
-                        (programs / name).symlink_to(f"{place}/{name}")
+                for directory in os.environ["PATH"].split(":"):
+                    if os.access(f"{directory}/{name}", os.X_OK):
+                        (programs / name).symlink_to(f"{directory}/{name}")
                         break
             fakes = {"id": "echo 0", "df": "echo 99"} | ({"mmdebstrap": mmdebstrap} if mmdebstrap else {})
             for name, text in fakes.items():

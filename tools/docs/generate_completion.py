@@ -34,7 +34,7 @@ class Words:
             self.signals = re.findall(r"^(\w+) ", output_of(program, "signals"), re.MULTILINE)
 
     def for_value(self, row: Row) -> list[str]:
-        if row.takes_file() or row.value.startswith(("FOLDER", "PLACE")):
+        if row.takes_file() or row.value.startswith(("FOLDER", "PATH")):
             return [FILES]
         return self.signals if row.names == ["--signals"] else row.choices()
 

@@ -25,7 +25,7 @@ COLUMNS = {
     "refusals": {"code": (int,), "cause": (str,), "remedy": (str,)},
     "limits": {"bit": (int,), "meaning": (str,)},
     "force_sources": {"bit": (int,), "meaning": (str,)},
-    "injections": {"part": (str,), "place": (str, "none"), "unit": (str, ""), "range": (list, [0, 0]),
+    "injections": {"part": (str,), "location": (str, "none"), "unit": (str, ""), "range": (list, [0, 0]),
                    "default": (NUMBER, 0), "help": (str,)},
     "state": {"id": (int,), "force_is_on": (bool, False), "meaning": (str,)},
     "event": {"bit": (int,), "meaning": (str,)},
@@ -233,7 +233,7 @@ def row_code(table: Table, name: str, row: dict) -> str:
         case "force_sources":
             fields = [f"ForceSource::{name}", json.dumps(name), text("meaning")]
         case "injections":
-            fields = [json.dumps(name), f"InjectionPart::{row['part']}", f"InjectionPlace::{row['place']}",
+            fields = [json.dumps(name), f"InjectionPart::{row['part']}", f"InjectionLocation::{row['location']}",
                       json.dumps(row["unit"]), *map(number, row["range"]), number(row["default"]), text("help")]
         case "state":
             fields = [json.dumps(name), str(row["force_is_on"]).lower(), text("meaning")]

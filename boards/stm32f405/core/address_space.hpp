@@ -32,12 +32,12 @@ class AddressSpace {
   std::uint8_t* ram_at(std::uint32_t address, std::uint32_t bytes);
   std::uint32_t word(std::uint32_t address) const {
     std::uint32_t value = 0;
-    if (const auto* place = at(address, 4)) std::memcpy(&value, place, 4);
+    if (const auto* memory = at(address, 4)) std::memcpy(&value, memory, 4);
     return value;
   }
   std::uint16_t half_word(std::uint32_t address) const {
     std::uint16_t value = 0;
-    if (const auto* place = at(address, 2)) std::memcpy(&value, place, 2);
+    if (const auto* memory = at(address, 2)) std::memcpy(&value, memory, 2);
     return value;
   }
 

@@ -64,9 +64,9 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
 Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
                                             std::uint32_t vector_table, bool stacks) {
   std::uint32_t values[9];
-  void* places[9];
-  for (int i = 0; i < 9; ++i) places[i] = &values[i];
-  uc_reg_read_batch(engine_, frame_registers, places, 9);
+  void* pointers[9];
+  for (int i = 0; i < 9; ++i) pointers[i] = &values[i];
+  uc_reg_read_batch(engine_, frame_registers, pointers, 9);
   // The two lowest bits of stack pointers are always 0 (ARMv7-M, B1.4.1), but MSR can set these bits in Unicorn.
   const std::uint32_t stack_pointer = values[7] & ~3u, control = values[8];
   const bool extended = float_context && (control & control_fpca) != 0;
@@ -159,9 +159,9 @@ void Processor::lift_privilege() {
 }
 
 void Processor::read_float_context(std::uint32_t* words) const {
-  void* places[doubles];
-  for (int i = 0; i < doubles; ++i) places[i] = &words[2 * i];
-  uc_reg_read_batch(engine_, float_registers, places, doubles);
+  void* pointers[doubles];
+  for (int i = 0; i < doubles; ++i) pointers[i] = &words[2 * i];
+  uc_reg_read_batch(engine_, float_registers, pointers, doubles);
   words[2 * doubles] = read(UC_ARM_REG_FPSCR);
 }
 
@@ -220,9 +220,9 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   current_exception_ = exception;  // set before the engine calls runs_above_faults()
   if (extended) set_unstacked_float({});
   if (float_stacked) {
-    void* float_places[doubles];
-    for (int i = 0; i < doubles; ++i) float_places[i] = &words[basic_words + 2 * i];
-    uc_reg_write_batch(engine_, float_registers, float_places, doubles);
+    void* float_pointers[doubles];
+    for (int i = 0; i < doubles; ++i) float_pointers[i] = &words[basic_words + 2 * i];
+    uc_reg_write_batch(engine_, float_registers, float_pointers, doubles);
     write(UC_ARM_REG_FPSCR, words[24]);
   }
   const std::uint32_t stack_pointer = (frame + bytes) | (xpsr.padded.in(status) ? 4u : 0u);
@@ -233,9 +233,9 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   write(UC_ARM_REG_CONTROL, control);
   write(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP, stack_pointer);
   if (privilege != 0) write(UC_ARM_REG_CONTROL, control | privilege);
-  void* places[6];
-  for (int i = 0; i < 6; ++i) places[i] = &words[i];
-  uc_reg_write_batch(engine_, frame_registers, places, 6);
+  void* pointers[6];
+  for (int i = 0; i < 6; ++i) pointers[i] = &words[i];
+  uc_reg_write_batch(engine_, frame_registers, pointers, 6);
   write(UC_ARM_REG_XPSR_NZCVQG, (status & (xpsr.flags() | xpsr.if_then())) | xpsr.thumb.mask() | exception);
   // Unicorn updates its internal copies of the flags when APSR is written, so APSR is written last.
   write(UC_ARM_REG_APSR_NZCV, status & xpsr.conditions.mask());

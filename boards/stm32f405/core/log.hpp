@@ -42,15 +42,15 @@ class Log final : public UnmodelledLog {
     else
       std::snprintf(text, sizeof text, " + 0x%03X is not modeled: reads 0", offset);
     // The key excludes the value, because each register is logged once for reads and once for writes.
-    const std::string place = peripheral + (write ? " w " : " r ") + std::to_string(offset);
-    if (!places_.insert(place).second) return;
+    const std::string access = peripheral + (write ? " w " : " r ") + std::to_string(offset);
+    if (!accesses_.insert(access).second) return;
     say_once(peripheral + text);
   }
   const std::vector<std::string>& lines() const { return unmodelled_; }
 
  private:
   std::function<void(const std::string&)> sink_;
-  std::set<std::string> said_, places_;
+  std::set<std::string> said_, accesses_;
   std::vector<std::string> unmodelled_;
   bool accessing_ = false;
 };

@@ -60,8 +60,8 @@ Processor::~Processor() {
 
 void Processor::map_memories() {
   auto& memory = machine_.memory;
-  const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* place) {
-    check(uc_mem_map_ptr(engine_, base, bytes, rights, place), "map a memory");
+  const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* host_memory) {
+    check(uc_mem_map_ptr(engine_, base, bytes, rights, host_memory), "map a memory");
   };
   // At each access except plain loads, Unicorn searches its memory regions in mapping order. The most frequently used
   // regions are therefore mapped first.
@@ -373,11 +373,11 @@ bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
 bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address, int size, std::int64_t value,
                                  void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  const auto place = static_cast<std::uint32_t>(address);
-  if (self.refusal_of(place, Access::store, self.role())) return true;  // the fault follows
+  const auto target = static_cast<std::uint32_t>(address);
+  if (self.refusal_of(target, Access::store, self.role())) return true;  // the fault follows
   const auto bytes = static_cast<unsigned>(size);
-  if (const auto content = self.flash_port_.program(place, static_cast<std::uint32_t>(value), bytes)) {
-    self.flash_stores_.push_back({place, *content, bytes});
+  if (const auto content = self.flash_port_.program(target, static_cast<std::uint32_t>(value), bytes)) {
+    self.flash_stores_.push_back({target, *content, bytes});
     self.end_slice();
   }
   return true;

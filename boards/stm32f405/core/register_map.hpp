@@ -36,8 +36,8 @@ struct Repeat {
 
 struct MapEntry {
   std::array<char, 20> name{};
-  std::uint32_t reset_value = 0;  ///< registers only
-  std::uint16_t place = 0;        ///< byte offset of a register, bit position of a field
+  std::uint32_t reset_value = 0;     ///< registers only
+  std::uint16_t first_position = 0;  ///< byte offset of a register, bit position of a field
   std::uint16_t stride = 0;
   std::uint8_t width = 32, count = 1, first = 0;
   Access access = Access::rw;
@@ -63,7 +63,7 @@ struct Field : MapEntry {
                  static_cast<std::uint8_t>(repeat.first),
                  allowed,
                  0} {}
-  constexpr unsigned position(unsigned index = 0) const { return place + stride * index; }
+  constexpr unsigned position(unsigned index = 0) const { return first_position + stride * index; }
   constexpr std::uint32_t maximum() const { return width == 32 ? 0xFFFF'FFFF : (1u << width) - 1; }
   constexpr std::uint32_t mask(unsigned index = 0) const { return maximum() << position(index); }
   /// Value of the field in a register value.
@@ -96,12 +96,13 @@ struct Register : MapEntry {
                  static_cast<std::uint8_t>(repeat.first),
                  Access::rw,
                  1} {}
-  constexpr operator std::uint32_t() const { return place; }
+  constexpr operator std::uint32_t() const { return first_position; }
   constexpr bool covers(std::uint32_t offset) const {
-    return offset >= place && offset < place + std::uint32_t{stride} * count && (offset - place) % stride == 0;
+    return offset >= first_position && offset < first_position + std::uint32_t{stride} * count &&
+           (offset - first_position) % stride == 0;
   }
   /// Index of the repeated register at this offset.
-  constexpr unsigned index(std::uint32_t offset) const { return (offset - place) / stride; }
+  constexpr unsigned index(std::uint32_t offset) const { return (offset - first_position) / stride; }
 };
 
 /// Returns the entries of a map or of one register in the order of declaration.
@@ -116,7 +117,7 @@ consteval std::uint32_t bits_of(const OneRegister& one_register, Access access) 
   std::uint32_t bits = 0;
   for (const auto& entry : entries_of(one_register))
     for (unsigned i = 0; entry.is_register == 0 && entry.access == access && i < entry.count; ++i)
-      bits |= (entry.width == 32 ? 0xFFFF'FFFF : (1u << entry.width) - 1) << (entry.place + entry.stride * i);
+      bits |= (entry.width == 32 ? 0xFFFF'FFFF : (1u << entry.width) - 1) << (entry.first_position + entry.stride * i);
   return bits;
 }
 

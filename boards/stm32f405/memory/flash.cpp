@@ -91,8 +91,8 @@ void FlashController::set_busy(bool busy) {
 }
 
 void FlashController::begin(Ticks typical, bool erases, std::uint32_t offset, std::uint32_t bytes) {
-  const std::uint8_t* place = machine_.memory.flash() + offset;
-  operation_ = Operation{erases, offset, {place, place + bytes}};
+  const std::uint8_t* memory = machine_.memory.flash() + offset;
+  operation_ = Operation{erases, offset, {memory, memory + bytes}};
   Ticks duration = typical;
   if (machine_.options.slowest_flash) duration = typical == word_time ? slowest_word_time : 2 * typical;
   if (++operations_ == cut_at_) {
@@ -129,17 +129,17 @@ void FlashController::hold_up() {
 // the sector is unchanged, erased, or random.
 void FlashController::tear() {
   const auto& before = operation_->before;
-  std::uint8_t* place = machine_.memory.flash() + operation_->offset;
+  std::uint8_t* memory = machine_.memory.flash() + operation_->offset;
   enum Extent : unsigned { nothing, all, some, some_too };
   const auto extent = static_cast<Extent>(random_() / 7 % 4);
   for (std::size_t i = 0; i < before.size() && extent != all; ++i) {
     const auto any = static_cast<std::uint8_t>(random_() / 7);
     const unsigned kind = operation_->erases ? random_() / 7 % 3 : 3;
-    place[i] = extent == nothing ? before[i]
-               : kind == 0       ? before[i]
-               : kind == 1       ? place[i]
-               : kind == 2       ? any
-                                 : static_cast<std::uint8_t>(before[i] & (place[i] | any));
+    memory[i] = extent == nothing ? before[i]
+                : kind == 0       ? before[i]
+                : kind == 1       ? memory[i]
+                : kind == 2       ? any
+                                  : static_cast<std::uint8_t>(before[i] & (memory[i] | any));
   }
   processor_.forget_code(flash_base + operation_->offset, static_cast<std::uint32_t>(before.size()));
   operation_.reset();
@@ -174,12 +174,12 @@ void FlashController::write_options(std::uint32_t value) {
 }
 
 std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std::uint32_t value, unsigned size) {
-  const std::uint8_t* place = machine_.memory.at(address, size);
+  const std::uint8_t* memory = machine_.memory.at(address, size);
   const std::uint32_t offset = address < flash_bytes ? address : address - flash_base;
-  if (place == nullptr || offset >= flash_bytes) return {};
+  if (memory == nullptr || offset >= flash_bytes) return {};
   hold_up();
   std::uint32_t content = 0;
-  std::memcpy(&content, place, size);
+  std::memcpy(&content, memory, size);
   const unsigned parallelism = 1u << flash_map.cr.psize.of(control_);
   if (flash_map.cr.lock.in(control_) || !flash_map.cr.pg.in(control_))
     status_ |= flash_map.sr.pgserr.mask();

@@ -46,8 +46,8 @@ class Can final : public RegisterBlock, public Freezable {
   std::uint32_t read_word(std::uint32_t offset) override {
     if (can.rfr.covers(offset)) return fifos_[can.rfr.index(offset)].status();
     if (offset >= can.rir && offset < can.rir + can.rir.count * can.rir.stride) {
-      const std::uint32_t place = offset - can.rir;
-      return fifos_[place / can.rir.stride].word(place % can.rir.stride / 4);
+      const std::uint32_t offset_in_fifos = offset - can.rir;
+      return fifos_[offset_in_fifos / can.rir.stride].word(offset_in_fifos % can.rir.stride / 4);
     }
     return stored(offset);
   }

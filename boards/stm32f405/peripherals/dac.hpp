@@ -75,8 +75,8 @@ class Dac final : public RegisterBlock {
     if (offset == dac.cr) return control_;
     if (dac.dor.covers(offset)) return dac.dor.dor.with(output_[dac.dor.index(offset)]);
     std::uint32_t word = 0;
-    at_form(offset, [&](const Field& field, unsigned channel, unsigned place) {
-      word |= field.with(held_[channel] >> (bits - field.width), place);
+    at_form(offset, [&](const Field& field, unsigned channel, unsigned index) {
+      word |= field.with(held_[channel] >> (bits - field.width), index);
     });
     return word;
   }
@@ -102,8 +102,8 @@ class Dac final : public RegisterBlock {
            of_both(dac.dhr12ld) || of_both(dac.dhr8rd);
   }
   bool hold(std::uint32_t offset, std::uint32_t value) {
-    return at_form(offset, [&](const Field& field, unsigned channel, unsigned place) {
-      held_[channel] = field.of(value, place) << (bits - field.width);
+    return at_form(offset, [&](const Field& field, unsigned channel, unsigned index) {
+      held_[channel] = field.of(value, index) << (bits - field.width);
     });
   }
 

@@ -81,11 +81,11 @@ bool DmaController::load(std::uint32_t address, unsigned size, std::uint32_t& va
     value = bus_.read_register(address, size);
     return true;
   }
-  const std::uint8_t* place = machine_.memory.at(address, size);
+  const std::uint8_t* memory = machine_.memory.at(address, size);
   // DMA cannot access the CCM, because the CCM is connected only to the processor's data bus (RM0090, "System
   // architecture").
-  if (place == nullptr || (address >= ccm_base && address < system_base)) return false;
-  std::memcpy(&value, place, size);
+  if (memory == nullptr || (address >= ccm_base && address < system_base)) return false;
+  std::memcpy(&value, memory, size);
   return true;
 }
 
@@ -94,9 +94,9 @@ bool DmaController::store(std::uint32_t address, unsigned size, std::uint32_t va
     bus_.write_register(address, value, size);
     return true;
   }
-  std::uint8_t* place = machine_.memory.ram_at(address, size);
-  if (place == nullptr || address < sram_base) return false;
-  std::memcpy(place, &value, size);
+  std::uint8_t* memory = machine_.memory.ram_at(address, size);
+  if (memory == nullptr || address < sram_base) return false;
+  std::memcpy(memory, &value, size);
   return true;
 }
 

@@ -119,9 +119,9 @@ void Chip::delay_exception(unsigned exception, std::uint32_t cycles) {
   parts_->machine.nvic.hold_back(exception, cycles != 0);
 }
 bool Chip::flip_bit(std::uint32_t address, unsigned bit) {
-  std::uint8_t* place = parts_->machine.memory.at(address, 1);
-  if (place == nullptr) return false;
-  *place = static_cast<std::uint8_t>(*place ^ 1u << (bit & 7));
+  std::uint8_t* byte = parts_->machine.memory.at(address, 1);
+  if (byte == nullptr) return false;
+  *byte = static_cast<std::uint8_t>(*byte ^ 1u << (bit & 7));
   // Discards the translated blocks that contain the byte.
   parts_->processor.forget_code(address & ~3u, 4);
   return true;

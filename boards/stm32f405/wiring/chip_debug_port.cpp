@@ -33,7 +33,7 @@ unsigned access_size(std::uint32_t address, std::size_t bytes) {
 void ChipDebugPort::attach() { machine_.debugging.attached = true; }
 
 void ChipDebugPort::detach() {
-  while (!watch_points_.empty()) remove_watch_point(watch_points_.front().place);
+  while (!watch_points_.empty()) remove_watch_point(watch_points_.front().watch_point);
   machine_.debugging = {};
 }
 
@@ -52,8 +52,8 @@ void ChipDebugPort::set_float_registers(const FloatRegisters& registers) {
 }
 
 bool ChipDebugPort::read(std::uint32_t address, std::span<std::uint8_t> bytes) {
-  if (const auto* place = machine_.memory.at(address, static_cast<std::uint32_t>(bytes.size()))) {
-    std::memcpy(bytes.data(), place, bytes.size());
+  if (const auto* memory = machine_.memory.at(address, static_cast<std::uint32_t>(bytes.size()))) {
+    std::memcpy(bytes.data(), memory, bytes.size());
     return true;
   }
   if (!are_registers(address, bytes.size())) return false;
@@ -71,8 +71,8 @@ bool ChipDebugPort::read(std::uint32_t address, std::span<std::uint8_t> bytes) {
 bool ChipDebugPort::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return true;  // gdb tests with an empty write whether binary writes are supported
   const auto size = static_cast<std::uint32_t>(bytes.size());
-  if (auto* place = machine_.memory.ram_at(address, size)) {
-    std::memcpy(place, bytes.data(), bytes.size());
+  if (auto* memory = machine_.memory.ram_at(address, size)) {
+    std::memcpy(memory, bytes.data(), bytes.size());
     processor_.forget_code(address, size);
     return true;
   }
@@ -100,7 +100,7 @@ void ChipDebugPort::add_watch_point(const WatchPoint& watch_point) {
 
 void ChipDebugPort::remove_watch_point(const WatchPoint& watch_point) {
   const auto found = std::find_if(watch_points_.begin(), watch_points_.end(),
-                                  [&](const Watched& watched) { return watched.place == watch_point; });
+                                  [&](const Watched& watched) { return watched.watch_point == watch_point; });
   if (found == watch_points_.end()) return;
   processor_.unwatch(found->hook);
   watch_points_.erase(found);

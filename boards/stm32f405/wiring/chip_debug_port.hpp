@@ -34,7 +34,7 @@ class ChipDebugPort final : public DebugPort {
 
  private:
   struct Watched {
-    WatchPoint place;
+    WatchPoint watch_point;
     uc_hook hook;
   };
   Machine& machine_;

@@ -196,11 +196,11 @@ void Execution::sleep_until(Ticks when) {
 
 /// Returns true if the exception has a handler. Otherwise the function enters HardFault or locks up the processor.
 bool Execution::has_handler(unsigned exception) {
-  const std::uint32_t place = system_control_.vector_table() + 4 * exception;
-  const std::uint32_t vector = machine_.memory.word(place);
+  const std::uint32_t vector_address = system_control_.vector_table() + 4 * exception;
+  const std::uint32_t vector = machine_.memory.word(vector_address);
   if ((vector & 1) != 0) return true;
   const std::string what = "the vector table has no handler for " + name_of(exception) + ": the vector is " +
-                           hexadecimal(vector) + at(" at", place, processor_.program_counter());
+                           hexadecimal(vector) + at(" at", vector_address, processor_.program_counter());
   note_fault(what);
   system_control_.record_fault(0, scb.hfsr.vecttbl.mask());
   exception == exception_hard_fault ? lock_up(what) : enter(exception_hard_fault);

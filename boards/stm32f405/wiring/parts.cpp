@@ -25,11 +25,11 @@ constexpr std::uint32_t reset_register_of(std::uint32_t enable_register) {
   return enable_register - (rcc_map.ahb1enr - rcc_map.ahb1rstr);
 }
 
-struct Place {
+struct BusSlot {
   std::uint32_t base;
   ClockGate clock;
 };
-constexpr Place timer_places[14] = {
+constexpr BusSlot timer_slots[14] = {
     {0x4001'0000, gate(rcc_map.apb2enr, rcc_map.apb2enr.tim1en)},
     {0x4000'0000, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim2en)},
     {0x4000'0400, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim3en)},
@@ -45,12 +45,12 @@ constexpr Place timer_places[14] = {
     {0x4000'1C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim13en)},
     {0x4000'2000, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim14en)},
 };
-struct UsartPlace {
+struct UsartInstance {
   const char* name;
-  Place place;
+  BusSlot slot;
   unsigned position;  ///< in the vector table
 };
-constexpr UsartPlace usart_places[6] = {
+constexpr UsartInstance usart_instances[6] = {
     {"USART1", {0x4001'1000, gate(rcc_map.apb2enr, rcc_map.apb2enr.usart1en)}, 37},
     {"USART2", {0x4000'4400, gate(rcc_map.apb1enr, rcc_map.apb1enr.usart2en)}, 38},
     {"USART3", {0x4000'4800, gate(rcc_map.apb1enr, rcc_map.apb1enr.usart3en)}, 39},
@@ -58,20 +58,22 @@ constexpr UsartPlace usart_places[6] = {
     {"UART5", {0x4000'5000, gate(rcc_map.apb1enr, rcc_map.apb1enr.uart5en)}, 53},
     {"USART6", {0x4001'1400, gate(rcc_map.apb2enr, rcc_map.apb2enr.usart6en)}, 71},
 };
-struct InterruptPlace {
-  Place place;
+struct InstanceWithInterrupt {
+  BusSlot slot;
   unsigned position;  ///< vector table position of the first interrupt
 };
-constexpr InterruptPlace spi_places[3] = {{{0x4001'3000, gate(rcc_map.apb2enr, rcc_map.apb2enr.spi1en)}, 35},
-                                          {{0x4000'3800, gate(rcc_map.apb1enr, rcc_map.apb1enr.spi2en)}, 36},
-                                          {{0x4000'3C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.spi3en)}, 51}};
-constexpr InterruptPlace i2c_places[3] = {{{0x4000'5400, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 0)}, 31},
-                                          {{0x4000'5800, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 1)}, 33},
-                                          {{0x4000'5C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 2)}, 72}};
-constexpr InterruptPlace can_places[2] = {{{0x4000'6400, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 0)}, 19},
-                                          {{0x4000'6800, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 1)}, 63}};
+constexpr InstanceWithInterrupt spi_instances[3] = {{{0x4001'3000, gate(rcc_map.apb2enr, rcc_map.apb2enr.spi1en)}, 35},
+                                                    {{0x4000'3800, gate(rcc_map.apb1enr, rcc_map.apb1enr.spi2en)}, 36},
+                                                    {{0x4000'3C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.spi3en)}, 51}};
+constexpr InstanceWithInterrupt i2c_instances[3] = {
+    {{0x4000'5400, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 0)}, 31},
+    {{0x4000'5800, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 1)}, 33},
+    {{0x4000'5C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 2)}, 72}};
+constexpr InstanceWithInterrupt can_instances[2] = {
+    {{0x4000'6400, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 0)}, 19},
+    {{0x4000'6800, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 1)}, 63}};
 /// Clocks of peripherals that are defined outside of this library.
-constexpr Place outside_places[] = {
+constexpr BusSlot outside_slots[] = {
     {0x5000'0000, gate(rcc_map.ahb2enr, rcc_map.ahb2enr.otgfsen)},
     {0x5005'0000, gate(rcc_map.ahb2enr, rcc_map.ahb2enr.dcmien)},
 };
@@ -97,12 +99,12 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
     const std::string function = name ? name(address) : std::string();
     return function.empty() ? text : text + (" " + function);
   };
-  for (unsigned i = 0; i < std::size(usart_places); ++i)
-    usarts.emplace_back(machine, dma, pins, i + 1, usart_places[i].position,
-                        usart_places[i].place.clock.enable_register == rcc_map.apb2enr);
-  for (unsigned i = 0; i < std::size(spi_places); ++i)
-    spis.emplace_back(machine, events, dma, i + 1, spi_places[i].position,
-                      spi_places[i].place.clock.enable_register == rcc_map.apb2enr);
+  for (unsigned i = 0; i < std::size(usart_instances); ++i)
+    usarts.emplace_back(machine, dma, pins, i + 1, usart_instances[i].position,
+                        usart_instances[i].slot.clock.enable_register == rcc_map.apb2enr);
+  for (unsigned i = 0; i < std::size(spi_instances); ++i)
+    spis.emplace_back(machine, events, dma, i + 1, spi_instances[i].position,
+                      spi_instances[i].slot.clock.enable_register == rcc_map.apb2enr);
   put_peripherals();
 
   // Electronic signature (RM0090, "Device electronic signature"), and option bytes with their factory values.
@@ -128,8 +130,8 @@ void ChipParts::put_peripherals() {
       gate(rcc_map.ahb2enr, rcc_map.ahb2enr.rngen));
   put(0x4000'3000, "IWDG", make<IndependentWatchdog>(machine, rcc));
   put(0x4000'2C00, "WWDG", make<WindowWatchdog>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.wwdgen));
-  for (unsigned i = 0; i < std::size(timer_places); ++i)
-    put(timer_places[i].base, "TIM" + std::to_string(i + 1), timers.timer(i + 1), timer_places[i].clock);
+  for (unsigned i = 0; i < std::size(timer_slots); ++i)
+    put(timer_slots[i].base, "TIM" + std::to_string(i + 1), timers.timer(i + 1), timer_slots[i].clock);
   // The three converters share a register block. Each converter has a separate enable bit, and one bit resets all
   // converters.
   bus.add(0x4001'2000, 1024, "ADC", adcs, rcc.enable_register(rcc_map.apb2enr), rcc_map.apb2enr.adcen.masks());
@@ -137,17 +139,17 @@ void ChipParts::put_peripherals() {
   rcc.add_reset(rcc_map.apb2rstr, rcc_map.apb2enr.adcen.mask(), adcs);
   put(0x4002'6000, "DMA1", dma.controller(1), gate(rcc_map.ahb1enr, rcc_map.ahb1enr.dmaen, 0));
   put(0x4002'6400, "DMA2", dma.controller(2), gate(rcc_map.ahb1enr, rcc_map.ahb1enr.dmaen, 1));
-  for (unsigned i = 0; i < std::size(usart_places); ++i)
-    put(usart_places[i].place.base, usart_places[i].name, usarts[i], usart_places[i].place.clock);
-  for (unsigned i = 0; i < std::size(spi_places); ++i)
-    put(spi_places[i].place.base, "SPI" + std::to_string(i + 1), spis[i], spi_places[i].place.clock);
-  for (unsigned i = 0; i < std::size(i2c_places); ++i)
-    put(i2c_places[i].place.base, "I2C" + std::to_string(i + 1),
-        make<I2c>(machine, events, i + 1, i2c_places[i].position), i2c_places[i].place.clock);
+  for (unsigned i = 0; i < std::size(usart_instances); ++i)
+    put(usart_instances[i].slot.base, usart_instances[i].name, usarts[i], usart_instances[i].slot.clock);
+  for (unsigned i = 0; i < std::size(spi_instances); ++i)
+    put(spi_instances[i].slot.base, "SPI" + std::to_string(i + 1), spis[i], spi_instances[i].slot.clock);
+  for (unsigned i = 0; i < std::size(i2c_instances); ++i)
+    put(i2c_instances[i].slot.base, "I2C" + std::to_string(i + 1),
+        make<I2c>(machine, events, i + 1, i2c_instances[i].position), i2c_instances[i].slot.clock);
   const Can* first_can = nullptr;
-  for (unsigned i = 0; i < std::size(can_places); ++i) {
-    Can& one = make<Can>(machine, events, i + 1, can_places[i].position, first_can);
-    put(can_places[i].place.base, "CAN" + std::to_string(i + 1), one, can_places[i].place.clock);
+  for (unsigned i = 0; i < std::size(can_instances); ++i) {
+    Can& one = make<Can>(machine, events, i + 1, can_instances[i].position, first_can);
+    put(can_instances[i].slot.base, "CAN" + std::to_string(i + 1), one, can_instances[i].slot.clock);
     if (first_can == nullptr) first_can = &one;
   }
   put(0x4000'7400, "DAC", make<Dac>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.dacen));
@@ -159,10 +161,10 @@ void ChipParts::put_peripherals() {
 
 void ChipParts::add_outside_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name,
                                        Peripheral& peripheral) {
-  for (const auto& place : outside_places)
-    if (place.base == base) {
-      bus.add(base, size, name, peripheral, rcc.enable_register(place.clock.enable_register), place.clock.mask);
-      rcc.add_reset(reset_register_of(place.clock.enable_register), place.clock.mask, peripheral);
+  for (const auto& slot : outside_slots)
+    if (slot.base == base) {
+      bus.add(base, size, name, peripheral, rcc.enable_register(slot.clock.enable_register), slot.clock.mask);
+      rcc.add_reset(reset_register_of(slot.clock.enable_register), slot.clock.mask, peripheral);
       return;
     }
   bus.add(base, size, name, peripheral);

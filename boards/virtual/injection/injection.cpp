@@ -12,7 +12,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-using protocol::InjectionPlace;
+using protocol::InjectionLocation;
 
 double number(std::string_view text, std::string_view of_what) {
   double value = 0.0;
@@ -77,28 +77,30 @@ unsigned one_of(std::span<const std::string_view> names, const std::string& text
 
 void check_target(Injection& injection, const std::string& of, const board::Facts& board) {
   const auto& info = protocol::info(injection.fault);
-  if (of.empty() && info.place != InjectionPlace::none && info.place != InjectionPlace::address)
-    throw InvalidInjection(fmt::format("{} needs a position; add {}", info.name, wanted_place(info.place)));
+  if (of.empty() && info.location != InjectionLocation::none && info.location != InjectionLocation::address)
+    throw InvalidInjection(fmt::format("{} needs a location; add {}", info.name, required_location(info.location)));
   injection.of = of;
-  const auto names = protocol::names_of_places(info.place);
-  switch (info.place) {
-    case InjectionPlace::none:
-      if (!of.empty()) throw InvalidInjection(fmt::format("{} has no position; omit \"{}\"", info.name, of));
+  const auto names = protocol::location_names(info.location);
+  switch (info.location) {
+    case InjectionLocation::none:
+      if (!of.empty()) throw InvalidInjection(fmt::format("{} has no location; omit \"{}\"", info.name, of));
       return;
-    case InjectionPlace::motor: injection.number = one_of(names, of, "motor"); return;
-    case InjectionPlace::converter: injection.number = 1 + one_of(names, of, "converter"); return;
-    case InjectionPlace::exception: injection.number = whole_number(of, 2, exception_numbers - 1, "exception"); return;
-    case InjectionPlace::leg: {
+    case InjectionLocation::motor: injection.number = one_of(names, of, "motor"); return;
+    case InjectionLocation::converter: injection.number = 1 + one_of(names, of, "converter"); return;
+    case InjectionLocation::exception:
+      injection.number = whole_number(of, 2, exception_numbers - 1, "exception");
+      return;
+    case InjectionLocation::leg: {
       const unsigned leg = one_of(names, of, "half bridge");
       injection.number = leg / 2;
       injection.leg = leg % 2;
       return;
     }
-    case InjectionPlace::wire:
+    case InjectionLocation::wire:
       injection.wires[0] = wire(of, board);
       injection.of = name_of(injection.wires[0], board);
       return;
-    case InjectionPlace::wires: {
+    case InjectionLocation::wires: {
       const auto plus = of.find('+');
       if (plus == std::string::npos)
         throw InvalidInjection(fmt::format("{} needs two wires, such as PA0+PA1", info.name));
@@ -108,7 +110,7 @@ void check_target(Injection& injection, const std::string& of, const board::Fact
       injection.of = name_of(injection.wires[0], board) + "+" + name_of(injection.wires[1], board);
       return;
     }
-    case InjectionPlace::address:
+    case InjectionLocation::address:
       if (!of.empty()) injection.address = address(of);
       return;
   }
@@ -191,7 +193,7 @@ std::string explain_injections() {
   std::string text;
   for (const auto& row : protocol::injection_table) {
     constexpr std::string_view of[] = {"", ":MOTOR", ":LEG", ":WIRE", ":WIRE+WIRE", ":EXCEPTION", ":ADC", "[:ADDRESS]"};
-    std::string usage = fmt::format("{}{}", row.name, of[static_cast<std::size_t>(row.place)]);
+    std::string usage = fmt::format("{}{}", row.name, of[static_cast<std::size_t>(row.location)]);
     if (row.has_amount()) usage += "=" + std::string(row.unit.empty() ? "N" : row.unit);
     constexpr std::size_t column = 30;
     const std::string help = protocol::help_of(row);

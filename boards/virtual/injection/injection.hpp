@@ -24,7 +24,7 @@ class InvalidInjection : public std::runtime_error {
 
 struct Injection {
   protocol::InjectedFault fault;
-  std::string of;                        ///< full name of the position; empty if the fault has only one position
+  std::string of;                        ///< full name of the location; empty if the fault has only one location
   unsigned number = 0;                   ///< index of the motor (from 0), the exception or the converter
   unsigned leg = 0;                      ///< 0 is A
   std::array<PinName, 2> wires{};        ///< one or two

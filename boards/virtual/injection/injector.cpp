@@ -11,7 +11,7 @@ namespace {
 
 using protocol::InjectedFault;
 
-/// Returns the same value for faults that exclude each other at one position.
+/// Returns the same value for faults that exclude each other at one location.
 InjectedFault kind(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::wire_low:
@@ -134,7 +134,7 @@ void Injector::heal_all() {
 
 void Injector::choose_address(Injection& injection) {
   const auto below = [&](std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); };
-  if (protocol::info(injection.fault).place != protocol::InjectionPlace::address) return;
+  if (protocol::info(injection.fault).location != protocol::InjectionLocation::address) return;
   if (!injection.address) {
     if (injection.fault == InjectedFault::ram_bit) {
       const std::uint32_t offset = below(sram_bytes + ccm_bytes);
@@ -151,11 +151,11 @@ void Injector::choose_address(Injection& injection) {
 // ---- applying and clearing one fault ----------------------------------------------------------------------
 
 void Injector::put(const Injection& injection, bool in) {
-  switch (protocol::info(injection.fault).place) {
-    case protocol::InjectionPlace::wire:
-    case protocol::InjectionPlace::wires: return put_into_wire(injection, in);
-    case protocol::InjectionPlace::motor:
-    case protocol::InjectionPlace::leg: return put_into_motor(injection, in);
+  switch (protocol::info(injection.fault).location) {
+    case protocol::InjectionLocation::wire:
+    case protocol::InjectionLocation::wires: return put_into_wire(injection, in);
+    case protocol::InjectionLocation::motor:
+    case protocol::InjectionLocation::leg: return put_into_motor(injection, in);
     default: return put_into_chip(injection, in);
   }
 }

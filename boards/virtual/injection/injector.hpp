@@ -43,7 +43,7 @@ class Injector {
 
   Injector(Victims victims, std::uint64_t seed) : victims_(std::move(victims)), random_(seed) {}
 
-  /// Applies the fault after `after_s` (see next()). Replaces a fault of the same kind at the same position. Throws
+  /// Applies the fault after `after_s` (see next()). Replaces a fault of the same kind at the same location. Throws
   /// InvalidInjection if no memory exists at the address, or if `faults_maximum` is reached. Do not call this function
   /// inside Chip::run_until(). Returns a unique number for the fault.
   unsigned add(const Injection& injection);
@@ -51,7 +51,7 @@ class Injector {
   Ticks next() const;
   void carry_out();
 
-  /// Clears active faults and cancels planned faults of this kind at position `of`. An empty `of` means all positions.
+  /// Clears active faults and cancels planned faults of this kind at location `of`. An empty `of` means all locations.
   /// Returns the number of cleared and canceled faults. The effect of a momentary fault remains.
   unsigned heal(protocol::InjectedFault fault, const std::string& of);
   void heal_all();

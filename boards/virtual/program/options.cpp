@@ -139,7 +139,7 @@ void add_instruments(CLI::App& app, Given& given) {
   app.add_option("--uart", given.uarts,
                  "Connect a UART (usart1 to usart3, uart4, uart5, usart6) in both directions: usart1=stdio to this\n"
                  "terminal, usart1=PORT to a TCP port or a Unix socket, usart1=PATH to a new pseudo-terminal at PATH")
-      ->type_name("UART=PLACE")
+      ->type_name("UART=TARGET")
       ->allow_extra_args(false);
   app.add_option("--vcd", given.options.waveform,
                  "File for pin levels and the running exception over time, for GTKWave")

@@ -55,7 +55,7 @@ int list_devices(const DeviceOptions& options) {
       json.push_back({{"serial_number", each.serial_number},
                       {"product", each.product},
                       {"board", each.board},
-                      {"place", each.location}});
+                      {"location", each.location}});
     else
       fmt::print("{:<26} {:<28} {:<20} {}\n", each.serial_number, each.product,
                  each.board.empty() ? "unknown board" : each.board, each.location);

@@ -60,7 +60,7 @@ ordered_json crash_json(const protocol::CrashFacts& crash, const Image& image) {
   ordered_json chain = ordered_json::array();
   for (const std::uint32_t address : crash::chain(crash))
     chain.push_back(
-        {{"address", address}, {"place", image ? image->source_location(address - (chain.empty() ? 0 : 2)) : ""}});
+        {{"address", address}, {"location", image ? image->source_location(address - (chain.empty() ? 0 : 2)) : ""}});
   return {{"exception", crash.exception},
           {"cause", crash::cause(crash)},
           {"chain", chain},

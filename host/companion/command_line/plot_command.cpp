@@ -105,7 +105,7 @@ void add_plot_command(const CommandContext& context) {
       ->type_name("SECONDS")
       ->check(more_than_zero());
   command->add_option("--out", plot_options->output, "PNG file, or folder for --paper. Default: next to FILE")
-      ->type_name("PLACE");
+      ->type_name("PATH");
   add_examples(*command,
                "inkwell plot push.h5 --signals force_N,position_z_m --from 1 --to 2.5 --out push.png\n"
                "inkwell plot results/recording.csv --signals current_1_A,true_current_1_A\n"

@@ -14,7 +14,7 @@ namespace inkwell::campaign {
 namespace {
 
 using protocol::InjectedFault;
-using protocol::InjectionPlace;
+using protocol::InjectionLocation;
 
 /// The campaign tests only the second of three equivalent wires.
 bool is_tried(std::string_view wire) {
@@ -40,28 +40,28 @@ constexpr struct {
                     {InjectedFault::analog_sag, 3.5},
                     {InjectedFault::main_loop_stalled, 0.012}};  // detected, but shorter than the watchdog time-out
 
-std::vector<std::string> places(InjectedFault fault) {
-  std::vector<std::string> places;
-  switch (protocol::info(fault).place) {
-    case InjectionPlace::none:
-    case InjectionPlace::address: return {""};
-    case InjectionPlace::motor: return {"2"};
-    case InjectionPlace::leg: return {"2A", "2B"};
-    case InjectionPlace::converter: return {"1", "2", "3"};
-    case InjectionPlace::wires: places.assign(std::begin(wires_that_touch), std::end(wires_that_touch)); break;
-    case InjectionPlace::exception:
-      for (const unsigned exception : exceptions) places.push_back(std::to_string(exception));
+std::vector<std::string> tried_locations(InjectedFault fault) {
+  std::vector<std::string> locations;
+  switch (protocol::info(fault).location) {
+    case InjectionLocation::none:
+    case InjectionLocation::address: return {""};
+    case InjectionLocation::motor: return {"2"};
+    case InjectionLocation::leg: return {"2A", "2B"};
+    case InjectionLocation::converter: return {"1", "2", "3"};
+    case InjectionLocation::wires: locations.assign(std::begin(wires_that_touch), std::end(wires_that_touch)); break;
+    case InjectionLocation::exception:
+      for (const unsigned exception : exceptions) locations.push_back(std::to_string(exception));
       break;
-    case InjectionPlace::wire:
+    case InjectionLocation::wire:
       if (fault == InjectedFault::wire_spikes) {
-        places.assign(std::begin(wires_with_spikes), std::end(wires_with_spikes));
+        locations.assign(std::begin(wires_with_spikes), std::end(wires_with_spikes));
       } else {
         for (const auto& use : board::default_board.pin_uses())
-          if (is_tried(use.name)) places.emplace_back(use.name);
+          if (is_tried(use.name)) locations.emplace_back(use.name);
       }
       break;
   }
-  return places;
+  return locations;
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ std::vector<CaseFault> case_faults() {
   std::vector<CaseFault> faults{{}};
   for (std::size_t i = 0; i < protocol::injection_table.size(); ++i) {
     const auto fault = static_cast<InjectedFault>(i);
-    for (std::string& of : places(fault)) {
+    for (std::string& of : tried_locations(fault)) {
       CaseFault made{.fault = fault, .of = std::move(of)};
       if (fault == InjectedFault::supply_spike) made.for_s = 0.005;
       if (fault == InjectedFault::encoder_lost_counts) made.amount = 0.1;
@@ -161,9 +161,10 @@ std::vector<CaseFault> case_faults() {
 
 CaseFault at_another(CaseFault fault, unsigned number) {
   if (!fault.fault) return fault;
-  const auto place = protocol::info(*fault.fault).place;
-  if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
-  if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
+  const auto location = protocol::info(*fault.fault).location;
+  if (location == InjectionLocation::motor || location == InjectionLocation::leg)
+    fault.of[0] = static_cast<char>('0' + number);
+  if (location != InjectionLocation::wire && location != InjectionLocation::wires) return fault;
   // A name of two adjacent wires contains the indices [1] and [2]. Each index changes cyclically.
   for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
     char& index = fault.of[at + 1];

@@ -59,7 +59,7 @@ enum class Deed : std::uint8_t {
   bus_suspended,  ///< the PC suspends, or the last program that uses the board through USB/IP is killed
 };
 
-/// An injected fault with its position, or another event (Deed). The control case has neither a fault nor a Deed.
+/// An injected fault with its location, or another event (Deed). The control case has neither a fault nor a Deed.
 struct CaseFault {
   std::optional<protocol::InjectedFault> fault;
   std::string of;
@@ -74,7 +74,7 @@ struct CaseFault {
 };
 
 struct Case {
-  unsigned number;  ///< from 1; constant for the same situations and the same table of faults and positions
+  unsigned number;  ///< from 1; constant for the same situations and the same table of faults and locations
   CaseFault fault;
   CaseSituation situation;
   unsigned phase;  ///< 1 to phases

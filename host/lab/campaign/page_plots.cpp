@@ -19,8 +19,8 @@ bool was_driven(const Result& result) {
 
 bool is_of_wires(const CaseFault& fault) {
   if (!fault.fault) return false;
-  const auto place = protocol::info(*fault.fault).place;
-  return place == protocol::InjectionPlace::wire || place == protocol::InjectionPlace::wires;
+  const auto location = protocol::info(*fault.fault).location;
+  return location == protocol::InjectionLocation::wire || location == protocol::InjectionLocation::wires;
 }
 
 /// Returns the largest fault-free force on the hand in each situation.

@@ -169,7 +169,7 @@ constexpr auto reasons_with_force = std::to_array<Reason>({
      "The bit was outside the image, either in the sectors of the stored parameters or in unused flash."},
 });
 
-constexpr bool depends_on_place(InjectedFault fault) {
+constexpr bool depends_on_location(InjectedFault fault) {
   using enum InjectedFault;
   return fault == wire_open || fault == wire_low || fault == wire_high || fault == wire_frozen ||
          fault == exception_lost || fault == exception_late;
@@ -177,11 +177,11 @@ constexpr bool depends_on_place(InjectedFault fault) {
 constexpr bool every_fault_has_a_reason() {
   for (std::size_t i = 0; i < protocol::injection_table.size(); ++i) {
     const auto fault = static_cast<InjectedFault>(i);
-    if (reason_in(reasons_with_force, fault).has_value() == depends_on_place(fault)) return false;
+    if (reason_in(reasons_with_force, fault).has_value() == depends_on_location(fault)) return false;
   }
   return true;
 }
-static_assert(every_fault_has_a_reason(), "reasons_with_force: each fault whose place does not matter needs a row");
+static_assert(every_fault_has_a_reason(), "reasons_with_force: each fault whose location does not matter needs a row");
 
 /// These reasons replace `reasons_with_force` while the force is off.
 constexpr auto reasons_without_force = std::to_array<Reason>({

@@ -106,7 +106,7 @@ NLOHMANN_JSON_SERIALIZE_ENUM(FirstFault, {{FirstFault::none, "none"},
                                           {FirstFault::reported, "told"},
                                           {FirstFault::black_box, "black_box"},
                                           {FirstFault::lost, "lost"}})
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, error, injected_at_s, place,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, error, injected_at_s, location,
                                    bridges_were_on, off_after_s, bridges_went_on, detected_as, fault_on_healing,
                                    told_before, first_fault, told_once_cleared, restarts, locked_up, missed_boot_loader,
                                    force_limit_N, peak_force_N, energy_J, travel_m, noticed_in_use_as, noticed_in_use_s,
@@ -122,6 +122,12 @@ void require_counts(const nlohmann::json& result) {
       throw device::Error(fmt::format("This file is not a result: {} is {}, which is not a count. Run the case again.",
                                       name, value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
   }
+}
+
+/// Results of earlier versions contain the location under the key `place`.
+void rename_old_key(nlohmann::json& result) {
+  if (const auto old = result.find("place"); old != result.end() && !result.contains("location"))
+    result["location"] = *old;
 }
 
 }  // namespace
@@ -173,8 +179,9 @@ std::string text_of(const Result& result) { return nlohmann::json(result).dump(2
 
 Result parse_result(const std::string& text) {
   try {
-    const auto result = device::parse_plain_json(text);
+    auto result = device::parse_plain_json(text);
     require_counts(result);
+    rename_old_key(result);
     return result.get<Result>();
   } catch (const nlohmann::json::exception& error) {
     const std::string_view reason = error.what();  // starts with an error number in brackets

@@ -57,7 +57,7 @@ struct Result {
   std::string error;  ///< reason why the case could not be run; the other members are invalid then
 
   double injected_at_s = 0;  ///< board time
-  std::string place;         ///< position chosen from the seed; empty if the case names it
+  std::string location;      ///< chosen from the seed; empty if the case names it
   bool bridges_were_on = false;
   std::optional<double> off_after_s;  ///< std::nullopt: the bridges were off, or stayed on
   bool bridges_went_on = false;       ///< the bridges were switched on, although they were off at the injection

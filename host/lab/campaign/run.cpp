@@ -198,7 +198,7 @@ void put_in(BoardRun& board, const CaseFault& what, const ParameterSet& paramete
   if (!what.fault) return;
   control.inject({std::string(protocol::info(*what.fault).name), what.of, what.amount, 0.0, what.for_s});
   const auto injected = control.truth().at("injected");
-  if (what.of.empty() && !injected.empty()) result.place = injected[0].value("of", "");
+  if (what.of.empty() && !injected.empty()) result.location = injected[0].value("of", "");
 }
 
 /// At start-up the watchdog expires once. The board also resets before it enters the boot loader.
@@ -342,7 +342,7 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   options.brown_out_level = 3;  // setting of a flashed board
   // All cases of a phase have the same seed, except cases in which the seed chooses the fault address.
   const auto& fault = the_case.fault.fault;
-  const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;
+  const bool chooses = fault && protocol::info(*fault).location == protocol::InjectionLocation::address;
   options.seed = chooses ? the_case.number : the_case.phase;
   try {
     BoardRun board(options);

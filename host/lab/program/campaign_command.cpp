@@ -67,9 +67,9 @@ void print_result(const Case& the_case, const campaign::Result& result) {
   const std::string off = result.off_after_s
                               ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
                               : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
-  const std::string position = result.place.empty() ? "" : " at " + result.place;
+  const std::string location = result.location.empty() ? "" : " at " + result.location;
   const std::string text = campaign::fault_text(result);
-  fmt::print("{:5} {}{}: {}\n", the_case.number, the_case.name(), position,
+  fmt::print("{:5} {}{}: {}\n", the_case.number, the_case.name(), location,
              result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", text.empty() ? "-" : text, off,
                                                 result.peak_force_N, campaign::name_of(result.recovery))
                                   : result.error);

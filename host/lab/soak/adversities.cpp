@@ -74,7 +74,7 @@ bool regains(Bench& bench) {
 bool reset_is_the_way(Bench& bench) {
   if (bench.board.is_locked_up()) return true;
   return bench.board.is(State::fault) &&
-         protocol::condition_table[protocol::place_of(bench.board.pose()->fault)].clearing ==
+         protocol::condition_table[protocol::index_of(bench.board.pose()->fault)].clearing ==
              protocol::Clearing::by_reset;
 }
 

@@ -72,7 +72,7 @@ TEST_SUITE("virtual chip: registers") {
     for (const RegisterMap& map : test.chip.register_maps())
       for (const MapEntry& entry : map.entries)
         for (unsigned i = 0; entry.is_register != 0 && i < entry.count; ++i, ++registers) {
-          const std::uint32_t value = read_register(test.chip, map.base + entry.place + entry.stride * i);
+          const std::uint32_t value = read_register(test.chip, map.base + entry.first_position + entry.stride * i);
           const std::string name = map.name + "." + entry.name.data();
           CAPTURE(name);
           CAPTURE(i);

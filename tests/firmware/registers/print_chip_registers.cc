@@ -30,7 +30,7 @@ nlohmann::json fields_of(std::span<const MapEntry> fields, unsigned register_num
   for (const MapEntry& field : fields)
     for (unsigned i = 0; i < field.count; ++i)
       result.push_back({{"name", numbered(field, field.count > 1 ? field.first + i : register_number)},
-                        {"position", field.place + field.stride * i},
+                        {"position", field.first_position + field.stride * i},
                         {"width", field.width}});
   return result;
 }
@@ -43,7 +43,7 @@ nlohmann::json registers_of(std::span<const MapEntry> entries) {
     while (end < entries.size() && entries[end].is_register == 0) ++end;
     for (unsigned i = 0; i < entry.count; ++i)
       result.push_back({{"name", numbered(entry, entry.first + i)},
-                        {"offset", entry.place + entry.stride * i},
+                        {"offset", entry.first_position + entry.stride * i},
                         {"fields", fields_of(entries.subspan(at + 1, end - at - 1), entry.first + i)}});
     at = end;
   }

@@ -12,8 +12,8 @@ namespace inkwell::window {
 
 namespace {
 
+using protocol::InjectionLocation;
 using protocol::InjectionPart;
-using protocol::InjectionPlace;
 
 std::string in_small_letters(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char letter) { return std::tolower(letter); });
@@ -31,12 +31,12 @@ std::optional<double> number(const std::string& text, std::string_view of_what) 
                   has_comma ? " with a decimal point and without commas" : ", or leave the field empty"));
 }
 
-std::string_view word_for(InjectionPlace place) {
-  switch (place) {
-    case InjectionPlace::motor: return "motor ";
-    case InjectionPlace::leg: return "leg ";
-    case InjectionPlace::exception: return "exception ";
-    case InjectionPlace::converter: return "converter ";
+std::string_view word_for(InjectionLocation location) {
+  switch (location) {
+    case InjectionLocation::motor: return "motor ";
+    case InjectionLocation::leg: return "leg ";
+    case InjectionLocation::exception: return "exception ";
+    case InjectionLocation::converter: return "converter ";
     default: return "";
   }
 }
@@ -96,17 +96,18 @@ std::vector<std::string_view> wires() {
 protocol::InjectionRequest request_of(const TypedInjection& typed) {
   const auto& row = info(typed.fault);
   protocol::InjectionRequest request{.fault = std::string(row.name)};
-  if (row.place != InjectionPlace::none) request.of = typed.of;
+  if (row.location != InjectionLocation::none) request.of = typed.of;
   if (row.has_amount()) request.amount = number(typed.amount, "the amount");
   request.after_s = number(typed.after_s, "the start delay").value_or(0.0);
   request.for_s = number(typed.for_s, "the duration");
   return request;
 }
 
-std::string place_and_amount(const device::Injection& injection) {
+std::string location_and_amount(const device::Injection& injection) {
   const auto fault = protocol::find_injection(injection.fault);
   std::string described = injection.of;
-  if (fault && !described.empty()) described = fmt::format("{}{}", word_for(protocol::info(*fault).place), described);
+  if (fault && !described.empty())
+    described = fmt::format("{}{}", word_for(protocol::info(*fault).location), described);
   if (!injection.amount) return described;
   const std::string_view unit = fault ? protocol::info(*fault).unit : "";
   return fmt::format("{}{}{:.6g}{}{}", described, described.empty() ? "" : ", ", *injection.amount,

@@ -34,7 +34,7 @@ struct TypedInjection {
 protocol::InjectionRequest request_of(const TypedInjection& typed);
 
 /// Returns a text such as "motor 2, 0.01"; empty if the fault has neither location nor amount.
-std::string place_and_amount(const device::Injection& injection);
+std::string location_and_amount(const device::Injection& injection);
 
 /// Returns a text such as "0.05 ms", "12.4 ms" or "1.35 s".
 std::string duration_text(double duration_s);

@@ -12,31 +12,31 @@ namespace inkwell::window {
 
 namespace {
 
-using protocol::InjectionPlace;
+using protocol::InjectionLocation;
 
 constexpr float amount_unit_points = 46.0f;
 constexpr float label_part = 0.34f;  // of a field's row
 
 /// Returns the label of the location field; null if the fault has only one location.
-const char* place_label(InjectionPlace place) {
-  switch (place) {
-    case InjectionPlace::none: return nullptr;
-    case InjectionPlace::motor: return "Motor";
-    case InjectionPlace::leg: return "Leg";
-    case InjectionPlace::wire: return "Wire";
-    case InjectionPlace::wires: return "Wires";
-    case InjectionPlace::exception: return "Exception";
-    case InjectionPlace::converter: return "Converter";
-    case InjectionPlace::address: return "Address";
+const char* location_label(InjectionLocation location) {
+  switch (location) {
+    case InjectionLocation::none: return nullptr;
+    case InjectionLocation::motor: return "Motor";
+    case InjectionLocation::leg: return "Leg";
+    case InjectionLocation::wire: return "Wire";
+    case InjectionLocation::wires: return "Wires";
+    case InjectionLocation::exception: return "Exception";
+    case InjectionLocation::converter: return "Converter";
+    case InjectionLocation::address: return "Address";
   }
   return nullptr;
 }
 
-const char* place_hint(InjectionPlace place) {
-  switch (place) {
-    case InjectionPlace::wires: return "wire+wire";
-    case InjectionPlace::exception: return "16 is interrupt 0";
-    case InjectionPlace::address: return "from the seed";
+const char* location_hint(InjectionLocation location) {
+  switch (location) {
+    case InjectionLocation::wires: return "wire+wire";
+    case InjectionLocation::exception: return "16 is interrupt 0";
+    case InjectionLocation::address: return "from the seed";
     default: return "name or number";
   }
 }
@@ -51,7 +51,7 @@ bool FaultForm::draw(const Style& style) {
   const auto& row = info(typed_.fault);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(5)});
   wrapped_text(style.palette->text_quiet, protocol::help_of(row));
-  bool entered = draw_place(style);
+  bool entered = draw_location(style);
   if (row.has_amount()) {
     entered |= draw_number("Amount", "amount", fmt::format("{}", row.otherwise), row.unit,
                            "An empty field uses the amount that is shown in gray.", typed_.amount, style);
@@ -96,15 +96,15 @@ bool FaultForm::draw_number(const char* label, const char* name, const std::stri
   return entered;
 }
 
-bool FaultForm::draw_place(const Style& style) {
-  const InjectionPlace place = info(typed_.fault).place;
-  const char* label = place_label(place);
+bool FaultForm::draw_location(const Style& style) {
+  const InjectionLocation location = info(typed_.fault).location;
+  const char* label = location_label(location);
   if (label == nullptr) return false;
-  const bool is_wire = place == InjectionPlace::wire || place == InjectionPlace::wires;
+  const bool is_wire = location == InjectionLocation::wire || location == InjectionLocation::wires;
   const float arrow = is_wire ? ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x : 0.0f;
-  const bool entered = draw_field({label, "place", place_hint(place), arrow}, typed_.of, style);
+  const bool entered = draw_field({label, "location", location_hint(location), arrow}, typed_.of, style);
   if (is_wire) draw_wires(style);
-  if (const auto names = protocol::names_of_places(place); !names.empty()) draw_names(names, style);
+  if (const auto names = protocol::location_names(location); !names.empty()) draw_names(names, style);
   return entered;
 }
 
@@ -132,7 +132,7 @@ void FaultForm::draw_wires(const Style& style) {
   for (const std::string_view name : wires()) {
     if (ImGui::Selectable(std::string(name).c_str(), typed_.of == name)) {
       // Appends the second wire after a plus sign.
-      const bool is_second = info(typed_.fault).place == InjectionPlace::wires && !typed_.of.empty() &&
+      const bool is_second = info(typed_.fault).location == InjectionLocation::wires && !typed_.of.empty() &&
                              typed_.of.find('+') == std::string::npos;
       typed_.of = is_second ? fmt::format("{}+{}", typed_.of, name) : std::string(name);
     }

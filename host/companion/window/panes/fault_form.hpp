@@ -30,7 +30,7 @@ class FaultForm {
   };
 
   // Returns true if the user pressed Enter in a field.
-  bool draw_place(const Style& style);
+  bool draw_location(const Style& style);
   bool draw_field(const Field& field, std::string& typed, const Style& style);
   bool draw_number(const char* label, const char* name, const std::string& hint, std::string_view unit,
                    std::string_view help, std::string& typed, const Style& style);

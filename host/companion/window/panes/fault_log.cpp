@@ -41,7 +41,7 @@ void FaultLog::take(const device::Injections& now) {
   end_those_gone(now);
   for (const device::Injection& each : now.faults) add(each);
   forget_oldest();
-  place_pending(now);
+  resolve_pending(now);
   newest_ = now;
 }
 
@@ -79,7 +79,7 @@ double FaultLog::period_s(const device::Injections& now) const {
   return std::abs(measured_s / nominal_s - 1.0) < drift_maximum ? measured_s : nominal_s;
 }
 
-void FaultLog::place_pending(const device::Injections& now) {
+void FaultLog::resolve_pending(const device::Injections& now) {
   if (!pending_) return;
   // Compares 32 bits, because the fault's period count may have wrapped.
   const auto at_periods = static_cast<std::uint32_t>(pending_->fault.at_periods);

@@ -51,7 +51,7 @@ class FaultLog {
   void end_those_gone(const device::Injections& now);
   void forget_oldest();
   double period_s(const device::Injections& now) const;
-  void place_pending(const device::Injections& now);
+  void resolve_pending(const device::Injections& now);
   void show_with(protocol::Fault fault, std::optional<double> noticed_s, double run_began_s);
 
   std::vector<LoggedInjection> faults_;

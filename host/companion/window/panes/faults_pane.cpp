@@ -207,7 +207,7 @@ void FaultsPane::draw_logged(const LoggedInjection& logged, const Style& style) 
     note_item(fmt::format("Heal {}", logged.injection.fault));
   }
   ImGui::PushFont(style.fonts.caption);
-  const std::string where = place_and_amount(logged.injection);
+  const std::string where = location_and_amount(logged.injection);
   wrapped_text(palette.text_quiet, fmt::format("{}{}{}", where, where.empty() ? "" : ", ", when_text(logged)));
   draw_noticed(logged, style);
   ImGui::PopFont();
@@ -238,7 +238,7 @@ std::vector<InjectedFault> FaultsPane::found() const {
 
 void FaultsPane::choose(InjectedFault fault) {
   refusal_.clear();
-  const bool same_kind = chosen_ && info(chosen_->typed().fault).place == info(fault).place;
+  const bool same_kind = chosen_ && info(chosen_->typed().fault).location == info(fault).location;
   chosen_.emplace(fault, same_kind ? chosen_->typed().of : std::string());
 }
 

@@ -37,7 +37,7 @@ float title_width(const Pane& pane, const Style& style) {
                          : std::max(title_taken, style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x);
 }
 
-// Draws the state text in place of the title.
+// Draws the state text instead of the title.
 void draw_running(const std::string& running, ImVec2 corner, ImVec2 end, bool is_shown, const Style& style) {
   const Palette& palette = *style.palette;
   const float width = style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x;

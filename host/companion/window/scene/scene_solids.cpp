@@ -17,9 +17,9 @@ class Builder {
   explicit Builder(control::Frame frame) : to_view_(workspace_to_view(frame)) {}
 
   void ball(glm::vec3 centre, float radius, Colour colour, float shininess = 0.25f) {
-    glm::mat4 placement{radius};
-    placement[3] = glm::vec4{to_view_ * centre, 1.0f};
-    add({Shape::sphere, placement, colour, shininess});
+    glm::mat4 transform{radius};
+    transform[3] = glm::vec4{to_view_ * centre, 1.0f};
+    add({Shape::sphere, transform, colour, shininess});
   }
   void rod(Shape shape, glm::vec3 from, glm::vec3 to, float radius, Colour colour, float shininess = 0.25f) {
     add({shape, between(to_view_ * from, to_view_ * to, radius), colour, shininess});

@@ -16,7 +16,7 @@ enum class Shape : std::uint8_t { sphere, cylinder, tapered, cone, coil };
 
 struct Solid {
   Shape shape;
-  glm::mat4 placement;  ///< in view space, meters
+  glm::mat4 transform;  ///< in view space, meters
   Colour colour;
   float shininess = 0.25f;
   bool casts_shadow = true;

@@ -31,12 +31,12 @@ SolidBatch::~SolidBatch() {
 void SolidBatch::append(const Solid& solid, bool opaque) {
   const Mesh& mesh = meshes_[static_cast<std::size_t>(solid.shape)];
   const auto first = static_cast<std::uint16_t>(corners_.size());
-  const glm::mat3 turn{solid.placement};
+  const glm::mat3 turn{solid.transform};
   // Transforms normals with the inverse transpose of the matrix. Bodies are scaled only along their axes, so a division
   // by the squared scale is sufficient.
   const glm::vec3 stretch_squared{glm::dot(turn[0], turn[0]), glm::dot(turn[1], turn[1]), glm::dot(turn[2], turn[2])};
   for (const Vertex& vertex : mesh.vertices)
-    corners_.push_back({glm::vec3{solid.placement * glm::vec4{vertex.position, 1.0f}},
+    corners_.push_back({glm::vec3{solid.transform * glm::vec4{vertex.position, 1.0f}},
                         turn * (vertex.normal / stretch_squared), opaque ? solid.colour.with_alpha(255) : solid.colour,
                         solid.shininess});
   for (std::uint16_t index : mesh.indices) indices_.push_back(static_cast<std::uint16_t>(first + index));

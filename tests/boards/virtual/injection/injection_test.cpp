@@ -78,7 +78,7 @@ TEST_CASE("memory goes by its address, or by the seed") {
 TEST_CASE("what is no fault is refused with a sentence that says what would be one") {
   CHECK(refuses("encoder_stick:1", "there is no fault \"encoder_stick\"; use one of these: wire_open, "));
   CHECK(refuses("", "there is no fault \"\""));
-  CHECK(refuses("encoder_stuck", "encoder_stuck needs a position; add the motor: 1, 2 or 3"));
+  CHECK(refuses("encoder_stuck", "encoder_stuck needs a location; add the motor: 1, 2 or 3"));
   CHECK(refuses("encoder_stuck:4", "\"4\" is not a valid motor; use one of these: 1, 2, 3"));
   CHECK(refuses("encoder_stuck:-1", "is not a valid motor"));
   CHECK(refuses("encoder_stuck:1x", "is not a valid motor"));
@@ -87,7 +87,7 @@ TEST_CASE("what is no fault is refused with a sentence that says what would be o
   CHECK(refuses("ram_bit=9", "ram_bit 9 is outside -1 to 7"));  // without a unit and without a space for it
   CHECK(refuses("shunt_offset:1=much", "\"much\" is not a number; a number is required for the amount"));
   CHECK(refuses("shunt_offset:1=nan", "is not a number"));
-  CHECK(refuses("supply_cut:1", "supply_cut has no position; omit \"1\""));
+  CHECK(refuses("supply_cut:1", "supply_cut has no location; omit \"1\""));
   CHECK(refuses("supply_cut@-1", "the delay is -1 s"));
   CHECK(refuses("supply_cut@2e6", "outside 0 to"));
   CHECK(refuses("supply_cut+9e9", "the duration is"));

@@ -61,15 +61,15 @@ struct Rig {
 
 /// Returns a valid location for each row of the table.
 std::string example(const protocol::InjectionInfo& row) {
-  using protocol::InjectionPlace;
+  using protocol::InjectionLocation;
   const std::string name(row.name);
-  switch (row.place) {
-    case InjectionPlace::motor: return name + ":2";
-    case InjectionPlace::leg: return name + ":2B";
-    case InjectionPlace::wire: return name + ":PB13";
-    case InjectionPlace::wires: return name + ":PB13+PB14";
-    case InjectionPlace::exception: return name + ":34";
-    case InjectionPlace::converter: return name + ":2";
+  switch (row.location) {
+    case InjectionLocation::motor: return name + ":2";
+    case InjectionLocation::leg: return name + ":2B";
+    case InjectionLocation::wire: return name + ":PB13";
+    case InjectionLocation::wires: return name + ":PB13+PB14";
+    case InjectionLocation::exception: return name + ":34";
+    case InjectionLocation::converter: return name + ":2";
     default: return name;
   }
 }
@@ -85,7 +85,7 @@ TEST_CASE("every fault of the table is injected and reported with its position u
     const auto& active = rig.injector.active()[0];
     CHECK(protocol::info(active.injection.fault).name == row.name);
     CHECK(active.since == rig.chip.now());
-    CHECK((active.injection.of.empty()) == (row.place == protocol::InjectionPlace::none));
+    CHECK((active.injection.of.empty()) == (row.location == protocol::InjectionLocation::none));
     if (row.name != "program_astray") rig.run(0.0002);
     CHECK(rig.injector.heal(active.injection.fault, "") == 1);
     CHECK(rig.injector.active().empty());

@@ -37,8 +37,8 @@ State next(State state, Events now) { return advance(in(state), {now, {}}).state
 Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
 TEST_CASE("a fault without a row in the condition table has the index after the last row") {
-  CHECK(protocol::place_of(Fault::none) == protocol::condition_table.size());
-  CHECK(protocol::place_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::condition_table.size());
+  CHECK(protocol::index_of(Fault::none) == protocol::condition_table.size());
+  CHECK(protocol::index_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::condition_table.size());
 }
 
 TEST_CASE("the way from power-up to force") {

@@ -42,7 +42,7 @@ TEST_CASE("the chain of calls begins where the crash was, and ends with the firs
   CHECK(chain(crash) == std::vector<std::uint32_t>{0, 0x200, 0x300});
 }
 
-TEST_CASE("without an image the text has the places, the registers and how to get names") {
+TEST_CASE("without an image the text has the addresses, the registers and how to get names") {
   const std::string with_stack = text(
       {.exception = 3, .program_counter = 0x800'1234, .stack_pointer = 0x1000'1000, .registers = {0xABCD}}, nullptr);
   CHECK(with_stack.find("at   0x08001234\n") != std::string::npos);

@@ -123,7 +123,7 @@ TEST_CASE("the reason of a device that refuses to select rows is reported") {
                  "The board refused a request for rows of the black box. The request has a wrong version"));
 }
 
-TEST_CASE("a black box that goes while it is read, or another that takes its place, is not mixed up") {
+TEST_CASE("a black box that goes while it is read, or another that replaces it, is not mixed up") {
   Kept kept = full();
   auto device = device_with(kept);
   const auto head = device.black_box();

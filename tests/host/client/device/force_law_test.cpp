@@ -115,7 +115,7 @@ TEST_CASE("a range-based for loop over a table reaches the added rows") {
   CHECK(bound.size() == protocol::signal_count + 1);
 }
 
-TEST_CASE("a law takes the place of one that nobody uses") {
+TEST_CASE("a law replaces a law that no device uses") {
   const auto other = device::parse_force_law(report_of("other"));
   CHECK(device::join_tables(other));
   CHECK(device::joined_force_law() == "other");

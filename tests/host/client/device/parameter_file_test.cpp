@@ -78,7 +78,7 @@ TEST_CASE("a file that cannot be written leaves the old one alone") {
                  "cannot be written"));
 }
 
-TEST_CASE("a file that can not be written whole, or not put in its place, leaves the old one as it was") {
+TEST_CASE("a file that can not be written whole, or not renamed, leaves the old one as it was") {
   const TemporaryDirectory directory;
   const auto save = [&](const char* name) {
     return message_of<device::Error>(

@@ -41,7 +41,7 @@ TEST_CASE("a force goes over the wire as it was asked, and the firmware takes it
   CHECK(target->interval_periods == 1000);
 }
 
-TEST_CASE("shapes keep their places, those that are not there have no life, and the firmware takes them") {
+TEST_CASE("shapes keep their indices, those that are not there have no life, and the firmware takes them") {
   const auto report = device::shapes_report(valid_shapes());
   CHECK(report.plane_count == 6);
   control::Shapes shapes;

@@ -368,7 +368,7 @@ TEST_CASE("changes behind a transaction that the device stalls reach it by the c
   CHECK(changes == 1);
 }
 
-TEST_CASE("the defaults take the place of changes that were asked for before") {
+TEST_CASE("the defaults replace changes that were asked for before") {
   FakeUsbipServer server;
   std::atomic<bool> is_there = false;
   device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });

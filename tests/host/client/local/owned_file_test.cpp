@@ -134,7 +134,7 @@ TEST_CASE("the content is read if it has the expected size, and a folder has non
   CHECK_THROWS_AS(OwnedFile(directory / "nowhere/file"), std::system_error);
 }
 
-TEST_CASE("a file that took the place of the owned one is not overwritten, and one that was removed comes back") {
+TEST_CASE("a file that replaced the owned one is not overwritten, and one that was removed comes back") {
   const TemporaryDirectory directory;
   const fs::path file = directory / "file";
   std::ofstream(file) << "old";

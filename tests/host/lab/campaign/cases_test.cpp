@@ -160,7 +160,7 @@ TEST_CASE("a fault of the second of three is had at each of them, one of what th
   for (const auto& use : board::default_board.pin_uses()) wires.emplace(use.name);
   for (const CaseFault& fault : listed) {
     CHECK(at_another(fault, 2).name() == fault.name());
-    if (!fault.fault || protocol::info(*fault.fault).place != protocol::InjectionPlace::wire) continue;
+    if (!fault.fault || protocol::info(*fault.fault).location != protocol::InjectionLocation::wire) continue;
     for (const unsigned motor : {1, 3}) CHECK_MESSAGE(wires.contains(at_another(fault, motor).of), fault.name());
   }
 }
@@ -179,6 +179,14 @@ TEST_CASE("a result whose counts are no counts is refused with their name") {
     wrong.replace(wrong.find(fault_free), std::string(fault_free).size(), damaged);
     CHECK_THROWS_WITH_AS(parse_result(wrong), doctest::Contains((name + " is ").c_str()), device::Error);
   }
+}
+
+TEST_CASE("a result of an earlier version, whose location has the key `place`, is read") {
+  const std::string text = text_of({.number = 7, .location = "0x20000010"});
+  std::string earlier = text;
+  const std::string key = "\"location\"";
+  earlier.replace(earlier.find(key), key.size(), "\"place\"");
+  CHECK(parse_result(earlier) == parse_result(text));
 }
 
 TEST_CASE("a file contains names, and names that this version does not know are refused") {

@@ -22,7 +22,7 @@ TEST_CASE("a drag rounds to the digits that are shown") {
   CHECK(ValueRange{.minimum = 0, .maximum = 1, .decimals = 3}.text_of(0.25f) == "0.250");
 }
 
-TEST_CASE("a value's place in its range, linear or by ratio") {
+TEST_CASE("a value's position in its range, linear or by ratio") {
   const ValueRange linear{.minimum = 100, .maximum = 300, .decimals = 0};
   CHECK(linear.part_of(150) == doctest::Approx(0.25f));
   CHECK(linear.part_of(1000) == 1.0f);

@@ -95,9 +95,9 @@ TEST_CASE("what is no number is told with its field") {
   CHECK(contains(text_of({InjectedFault::supply_sag, "", "", "", "x"}), "the duration"));
 }
 
-TEST_CASE("a fault is told with its place and its amount") {
+TEST_CASE("a fault is shown with its location and its amount") {
   const auto text_of = [](const char* fault, const char* of, std::optional<double> amount) {
-    return place_and_amount({.number = 1, .fault = fault, .of = of, .amount = amount, .at_s = 0, .has_come = true});
+    return location_and_amount({.number = 1, .fault = fault, .of = of, .amount = amount, .at_s = 0, .has_come = true});
   };
   CHECK(text_of("shunt_offset", "2", 0.5) == "motor 2, 0.5 A");
   CHECK(text_of("leg_high", "3B", {}) == "leg 3B");

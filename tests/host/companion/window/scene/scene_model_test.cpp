@@ -143,7 +143,7 @@ TEST_CASE("a pose looks different when a person could see it") {
   SUBCASE("force") { b.force_N[2] = 0.1f; }
   SUBCASE("stylus") { b.gimbal_rad[0] = 0.1f; }
   SUBCASE("state") { b.state = protocol::State::fault; }
-  SUBCASE("its place is lost") { b.is_referenced = !a.is_referenced; }
+  SUBCASE("its reference is lost") { b.is_referenced = !a.is_referenced; }
   CHECK(window::differs_visibly(a, b));
   CHECK(window::differs_visibly(a, std::nullopt));
 }

@@ -128,7 +128,7 @@ TEST_CASE("a formula that comes late has its extremes from there on") {
   CHECK(series->extremes(0, 1000).maximum == -static_cast<float>(history.begin()));
 }
 
-TEST_CASE("a recording that is laid over has its own values at the same places") {
+TEST_CASE("a recording that is laid over has its own values in the same periods") {
   SignalHistory history(256);
   const ScopeSignal twice(formula("2 * force_N"));
   history.derive({twice});

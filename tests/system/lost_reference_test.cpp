@@ -52,7 +52,7 @@ TEST_CASE("an encoder that jumps is told as that, in whatever part of a control 
   }
 }
 
-TEST_CASE("an encoder that jumps while another fault is told voids the place of the arm all the same") {
+TEST_CASE("an encoder that jumps while another fault is told voids the reference all the same") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
@@ -86,7 +86,7 @@ TEST_CASE("an inkwell's switch whose wire touches ground is told, and gives no r
 }
 
 TEST_CASE(
-    "an inkwell's switch whose wire touches ground from the start on is told as soon as the arm leaves the place") {
+    "an inkwell's switch whose wire touches ground from the start on is told as soon as the arm leaves the inkwell") {
   BoardRig rig;
   rig.control.inject({.fault = "wire_low", .of = "inkwell_switch"});
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
