@@ -28,9 +28,9 @@ void BackgroundCheck::run() {
 void BackgroundCheck::report(protocol::Conditions found) { host_link.found_in_main_loop.store(found); }
 
 protocol::Conditions BackgroundCheck::supply_faults() {
-  const bool swings = supply_ripple_.ripples(analog_inputs.supply_counts(), completed_periods.load());
+  const bool swings = supply_ripple_.detect_ripple(analog_inputs.supply_counts(), completed_periods.load());
   return condition(Fault::logic_supply_low, logic_supply.is_low()) |
-         condition(Fault::analog_supply, analog_supply_.is_off(analog_inputs.reference_counts())) |
+         condition(Fault::analog_supply, analog_supply_.detect_supply_error(analog_inputs.reference_counts())) |
          condition(Fault::supply_ripple, swings);
 }
 
@@ -38,11 +38,12 @@ protocol::Conditions BackgroundCheck::encoder_faults() {
   const std::uint32_t now_periods = completed_periods.load();
   const auto timer_counts = encoders.read();
   bool dead = false;
-  for (std::size_t i = 0; i < timer_counts.size(); ++i) dead |= encoder_wires_[i].is_dead(timer_counts[i], now_periods);
-  return condition(Fault::encoder_wire, dead) | condition(Fault::encoder_implausible, an_encoder_is_stuck());
+  for (std::size_t i = 0; i < timer_counts.size(); ++i)
+    dead |= encoder_wires_[i].detect_dead_wire(timer_counts[i], now_periods);
+  return condition(Fault::encoder_wire, dead) | condition(Fault::encoder_implausible, detect_stuck_encoders());
 }
 
-bool BackgroundCheck::an_encoder_is_stuck() {
+bool BackgroundCheck::detect_stuck_encoders() {
   const link::Sample* const sample = host_link.samples.newest();
   if (sample == nullptr) return false;
   const link::Sample& newest = *sample;
@@ -53,8 +54,8 @@ bool BackgroundCheck::an_encoder_is_stuck() {
   bool stuck = false;
   for (std::size_t i = 0; i < stuck_encoders_.size(); ++i) {
     const auto counts = static_cast<std::int32_t>(newest.signals[encoders_counts[i]]);
-    stuck |=
-        stuck_encoders_[i].is_stuck(counts, newest.signals[currents_A[i]], newest.summary.periods, held, moving_A[i]);
+    stuck |= stuck_encoders_[i].detect_stuck_encoder(counts, newest.signals[currents_A[i]], newest.summary.periods,
+                                                     held, moving_A[i]);
   }
   return stuck;
 }

@@ -37,7 +37,7 @@ class BackgroundCheck {
   void report(protocol::Conditions found);
   protocol::Conditions supply_faults();
   protocol::Conditions encoder_faults();
-  bool an_encoder_is_stuck();
+  bool detect_stuck_encoders();
   protocol::Conditions bridge_faults();
 
   MemoryCheck memory_check_;

@@ -112,7 +112,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
 // The supply interrupt and the control interrupt do not preempt each other. After this interrupt, the next control
 // period switches the bridges off. The main loop polls the CPU supply and reports the fault while the supply is low.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
-  if (logic_supply.has_fallen()) controller.raise(Fault::logic_supply_low);
+  if (logic_supply.acknowledge_interrupt()) controller.raise(Fault::logic_supply_low);
   drivers::finish_stores();
 }
 

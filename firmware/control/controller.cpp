@@ -111,7 +111,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
     over_current_for_A_ = {};
   }
   switches_.debounce(samples.switches, turn_);
-  supply_.filter(samples.supply_V);
+  supply_.add_sample(samples.supply_V);
   jump_bits_ = jumps(encoder_counts_, samples.encoder_counts, settings.encoders.jump_counts);
   encoder_counts_ = samples.encoder_counts;
   const auto take = [&](std::size_t i) { return replace(current_A_[i], samples.current_A[i] - offsets_.offset_A[i]); };

@@ -32,8 +32,8 @@ class LogicSupply {
   /// voltages of the sensors fall with the supply.
   static bool is_low() { return registers::PWR::CSR::PVDO::is_set(); }
 
-  /// Call this function in the interrupt. Returns false if the supply is no longer low.
-  INKWELL_INTERRUPT static bool has_fallen() {
+  /// Clears the pending interrupt. Call this function in the interrupt. Returns false if the supply is no longer low.
+  INKWELL_INTERRUPT static bool acknowledge_interrupt() {
     Lines::PR::write(detector);
     return is_low();
   }

@@ -143,7 +143,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
       break;
     case ReportId::black_box_rows: link_.black_box.select_rows(data); break;
     default:  // parameters
-      if (is_permitted(link::header_of(data).claim))
+      if (check_claim(link::header_of(data).claim))
         link_.parameters.accept(data, force_is_on(), link_.stored.restorable());
       else
         link_.parameters.refuse(data);

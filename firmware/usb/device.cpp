@@ -126,7 +126,7 @@ void Device::host_gone() {
   link_.scope.select({}, 0);
 }
 
-bool Device::is_permitted(std::uint32_t claim) {
+bool Device::check_claim(std::uint32_t claim) {
   const bool may = note_heard(claim);
   if (!may) link_.driver.count_refusal();
   return may;
@@ -285,13 +285,13 @@ void Device::take_report(std::span<const std::byte> report) {
 
 void Device::take_force(std::span<const std::byte> report) {
   const std::uint32_t claim = link::claim_of_force(report);
-  const bool is_of_driver = is_permitted(claim) && link_.driver.is_held_by(claim);
+  const bool is_of_driver = check_claim(claim) && link_.driver.is_held_by(claim);
   if (link_.program.accept_force(report, is_of_driver, pose_sequence_)) link_.commands.note_sign_of_life();
 }
 
 void Device::take_shapes(std::span<const std::byte> report) {
   const std::uint32_t claim = link::claim_of_shapes(report);
-  const bool is_of_driver = is_permitted(claim) && link_.driver.is_held_by(claim);
+  const bool is_of_driver = check_claim(claim) && link_.driver.is_held_by(claim);
   link_.request_results.note_shapes(link::ticket_of_shapes(report), is_of_driver
                                                                         ? link_.program.accept_shapes(report)
                                                                         : protocol::RequestResult::not_the_driver);
@@ -306,7 +306,7 @@ std::optional<protocol::CommandReport> Device::read_command(std::span<const std:
 
 bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
   if (!command) return true;
-  if (protocol::needs_claim(command->command) && !is_permitted(command->claim)) {
+  if (protocol::needs_claim(command->command) && !check_claim(command->claim)) {
     link_.request_results.note_dropped(*command, protocol::RequestResult::not_the_driver);
     return true;
   }

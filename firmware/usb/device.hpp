@@ -67,8 +67,8 @@ class Device final : private ControlRequests {
   bool may_store() const;
   /// Returns true if a request with this claim is permitted. The program with this claim must be the driver, or there
   /// must be no driver. Renews the claim of the driver, and counts refusals.
-  bool is_permitted(std::uint32_t claim);
-  /// Like is_permitted(), but does not count refusals.
+  bool check_claim(std::uint32_t claim);
+  /// Like check_claim(), but does not count refusals.
   bool note_heard(std::uint32_t claim);
   bool driver_parity() const { return (link_.driver.changes() & 1u) != 0; }
   /// Call this function after the claim of a program has ended. Fades the force and the shapes of this program, and

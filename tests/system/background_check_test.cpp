@@ -340,7 +340,7 @@ class HonestRig : public BoardRig {
     for (std::size_t row = 0; row < samples.count; ++row, ++period_)
       for (std::size_t i = 0; i < 3; ++i) {
         const auto count = static_cast<std::int32_t>(samples.values[3 * row + i]);
-        wires_[i].is_dead(static_cast<std::uint16_t>(count), period_);
+        wires_[i].detect_dead_wire(static_cast<std::uint16_t>(count), period_);
         most_changes = std::max(most_changes, wires_[i].changes);
       }
   }

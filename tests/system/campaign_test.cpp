@@ -100,11 +100,11 @@ TEST_CASE("a force that is falling is switched on again before it counts as rega
   REQUIRE(board.connect(1.0));
   board.set({{protocol::Parameter::host_timeout_s, 2.0f}, {protocol::Parameter::soft_landing_s, 1.0f}});
   REQUIRE(board.wait_for(protocol::State::ready, 1.0));
-  REQUIRE(campaign::regains_force(board));
+  REQUIRE(campaign::regain_force(board));
   board.run(0.3);
   board.command(protocol::Command::disable_force);
   REQUIRE(board.wait_for(protocol::State::landing, 0.1));
-  CHECK(campaign::regains_force(board));
+  CHECK(campaign::regain_force(board));
   CHECK(board.force_is_on());
   CHECK_FALSE(board.is(protocol::State::landing));
 }
@@ -120,7 +120,7 @@ TEST_CASE("a fault whose cause takes a while to go is cleared again, as a user d
   board.run(0.02);
   board.command(protocol::Command::clear_fault);
   CHECK_FALSE(board.wait_for(protocol::State::ready, 0.05));  // the bulk capacitor is still above the threshold
-  CHECK(campaign::regains_force(board));
+  CHECK(campaign::regain_force(board));
 }
 
 TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound arm bears it") {

@@ -23,7 +23,7 @@ void CurrentOffsets::measure(const Triple& current_A) {
   plausible = is_plausible(offset_A);
 }
 
-void SupplyFilter::filter(float sample_V) {
+void SupplyFilter::add_sample(float sample_V) {
   if (!started || !is_finite(supply_V)) supply_V = sample_V;
   started = true;
   supply_V += weight * (sample_V - supply_V);

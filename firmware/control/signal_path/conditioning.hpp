@@ -48,7 +48,7 @@ struct SupplyFilter {
   float per_V = 1.0f / floor_V;
   bool started = false;
 
-  void filter(float sample_V);
+  void add_sample(float sample_V);
 };
 
 // ---- switches ------------------------------------------------------------------------------------------

@@ -49,7 +49,7 @@ struct AnalogSupply {
   }
 
   /// Checks one reading of VREFINT. Returns true after more than `tolerated_readings` consecutive wrong readings.
-  bool is_off(std::uint16_t reference_counts) {
+  bool detect_supply_error(std::uint16_t reference_counts) {
     if (is_right(reference_counts))
       wrong_readings = 0;
     else if (wrong_readings <= tolerated_readings)

@@ -32,7 +32,7 @@ struct EncoderWire {
   /// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
   /// `dead_changes` changes between two neighboring counts within `within_periods`. Counting then restarts. Edges are
   /// missed if they are closer together than the readings, but a fast joint still causes enough changes.
-  bool is_dead(std::uint16_t timer_count, std::uint32_t now_periods) {
+  bool detect_dead_wire(std::uint16_t timer_count, std::uint32_t now_periods) {
     if (timer_count == count) return false;
     const bool goes_back = timer_count == before;
     const bool in_time = now_periods - since_periods <= within_periods;

@@ -47,7 +47,8 @@ struct StuckEncoder {
   /// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current
   /// changes of more than `moving_A` while the encoder was stationary. If `held` is true, the standstill time
   /// restarts.
-  bool is_stuck(std::int32_t now_counts, float now_A, std::uint32_t now_periods, bool held, float moving_A) {
+  bool detect_stuck_encoder(std::int32_t now_counts, float now_A, std::uint32_t now_periods, bool held,
+                            float moving_A) {
     current_A += weight * (now_A - current_A);
     const std::uint32_t away =
         static_cast<std::uint32_t>(now_counts) - static_cast<std::uint32_t>(counts) + tolerance_counts;

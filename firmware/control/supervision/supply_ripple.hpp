@@ -40,7 +40,7 @@ struct SupplyRipple {
 
   /// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true while the
   /// last `alternations` alternating excursions are within `within_periods`.
-  bool ripples(std::uint16_t supply_counts, std::uint32_t now_periods) {
+  bool detect_ripple(std::uint16_t supply_counts, std::uint32_t now_periods) {
     if (mean_counts < 0) mean_counts = supply_counts * mean_periods;
     constexpr auto all = static_cast<std::uint32_t>(mean_periods);
     const auto passed_periods = static_cast<std::int32_t>(std::min(now_periods - read_at_periods, all));

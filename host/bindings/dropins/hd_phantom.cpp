@@ -143,14 +143,14 @@ void list_arms() {
   for (const auto& arm : arms) servo().addresses.emplace_back(arm.address);
 }
 
-bool is_number(int number) {
+bool look_up_number(int number) {
   if (servo().addresses.empty()) list_arms();
   return number >= 0 && static_cast<std::size_t>(number) < servo().addresses.size();
 }
 
 /// Opens the device if necessary. Returns NULL on failure.
 Phantom* reach(int number) {
-  if (!is_number(number)) return nullptr;
+  if (!look_up_number(number)) return nullptr;
   if (const auto found = servo().phantoms.find(number);
       found != servo().phantoms.end() && found->second.handle != invalid_handle)
     return &found->second;
@@ -163,7 +163,7 @@ Phantom* reach(int number) {
 }
 
 /// Starts the servo. Returns false if the device is not open.
-bool is_open(int number) {
+bool start_servo_if_open(int number) {
   const std::lock_guard opening(servo().opening);
   const auto found = servo().phantoms.find(number);
   if (found == servo().phantoms.end() || !found->second.is_enabled) return false;
@@ -176,7 +176,7 @@ bool is_open(int number) {
 template <class Write>
 int read(int number, Write write) {
   const process::CancellationGuard guard;
-  bool sees = is_open(number);
+  bool sees = start_servo_if_open(number);
   std::unique_lock lock(servo().mutex);
   const auto found = servo().phantoms.find(number);
   if (found == servo().phantoms.end()) {
@@ -195,7 +195,7 @@ int read(int number, Write write) {
 template <class Set>
 int set_until_next_tick(int number, Set set) {
   const process::CancellationGuard guard;
-  if (!is_open(number)) return bad;
+  if (!start_servo_if_open(number)) return bad;
   std::unique_lock lock(servo().mutex);
   Phantom& phantom = servo().phantoms.find(number)->second;
   const auto frames = phantom.frames;
@@ -327,7 +327,7 @@ INKWELL_HD int hdPhantomGetWorkspaceRadius(int number, double* radius_m) {
 INKWELL_HD int hdPhantomGetType(int number, char* text) {
   const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
-  if (text == nullptr || !is_number(number)) return bad;
+  if (text == nullptr || !look_up_number(number)) return bad;
   std::memcpy(text, type_text, sizeof type_text);
   return good;
 }

@@ -41,7 +41,7 @@ ScopeStream::~ScopeStream() {
 void ScopeStream::select(const std::vector<protocol::Signal>& signals) {
   const std::lock_guard user(user_mutex_);
   if (recorder_) throw NotNow("A recording is running. Stop it before you select other signals.");
-  if (signals.empty() && !is_selected()) return;
+  if (signals.empty() && !clear_end_reason()) return;
   poses_.require_poses();
   device_.select_signals(signals);
   const std::lock_guard lock(mutex_);
@@ -53,7 +53,7 @@ void ScopeStream::select(const std::vector<protocol::Signal>& signals) {
   changed_.notify_all();
 }
 
-bool ScopeStream::is_selected() {
+bool ScopeStream::clear_end_reason() {
   const std::lock_guard lock(mutex_);
   if (signals_.empty()) ended_by_.clear();
   return !signals_.empty();

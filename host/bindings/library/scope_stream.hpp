@@ -44,8 +44,8 @@ class ScopeStream : private TurnPart {
   void end(std::uint64_t selection, const std::string& cause);
   /// `lock` must be locked and is unlocked during the wait.
   void wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s);
-  /// If no signals are selected, the function clears `ended_by_`.
-  bool is_selected();
+  /// Returns true if signals are selected. Otherwise the function clears `ended_by_`.
+  bool clear_end_reason();
 
   device::Device& device_;
   PoseFeed& poses_;

@@ -19,9 +19,9 @@ class BoardTimeout {
   BoardTimeout(double limit_s, Clock::duration silence)
       : limit_periods_(std::llround(limit_s * protocol::servo_rate_Hz)), silence_(silence) {}
 
-  /// Returns true if the limit is exceeded. The first call starts the limit. `now_periods` is the newest known board
-  /// time.
-  bool is_over(std::optional<std::int64_t> now_periods, Clock::time_point now = Clock::now()) {
+  /// Records the newest known board time `now_periods`. Returns true if the limit is exceeded. The first call starts
+  /// the limit.
+  bool update_time(std::optional<std::int64_t> now_periods, Clock::time_point now = Clock::now()) {
     const std::int64_t newest = now_periods.value_or(unknown);
     if (!is_started_ || newest != newest_periods_) heard_at_ = now;
     if (began_periods_ == unknown) began_periods_ = newest;
@@ -30,8 +30,8 @@ class BoardTimeout {
     const bool has_passed = newest != unknown && newest - began_periods_ > limit_periods_;
     return has_passed || now - heard_at_ > silence_;
   }
-  bool is_over(const std::optional<Pose>& newest) {
-    return is_over(newest ? std::optional(newest->time_periods) : std::nullopt);
+  bool update_time(const std::optional<Pose>& newest) {
+    return update_time(newest ? std::optional(newest->time_periods) : std::nullopt);
   }
 
  private:

@@ -293,7 +293,7 @@ struct Device::Implementation {
     WideCounter driven_periods;
     auto now = driven;
     while (now.is_driven != 0 && now.claim_digest == driven.claim_digest) {
-      if (limit.is_over(driven_periods.note(now.time_periods))) return false;
+      if (limit.update_time(driven_periods.note(now.time_periods))) return false;
       std::this_thread::sleep_for(claim_poll_interval);
       now = driver_report();
     }
@@ -389,7 +389,7 @@ struct Device::Implementation {
       const auto result = result_of(command);
       if (result == carried_out) return;
       if (result == not_the_driver) throw driven_by_another();
-      if (result != busy || limit.is_over(newest_period.load())) throw refused("a command", result);
+      if (result != busy || limit.update_time(newest_period.load())) throw refused("a command", result);
     }
   }
 
@@ -455,7 +455,7 @@ struct Device::Implementation {
       if (result.ticket != report.ticket) {
         // Another program has sent a transaction in the meantime, so the result is unknown. The loop sends this
         // transaction again.
-        if (limit.is_over(now_periods()))
+        if (limit.update_time(now_periods()))
           throw InUse("Other programs change parameters continuously. Close these programs.");
         continue;
       }
@@ -465,7 +465,7 @@ struct Device::Implementation {
       }
       if (result.refusal == protocol::Refusal::accepted)
         return {result.transactions, time_periods.nearest(result.applied_at_periods)};
-      if (result.refusal != protocol::Refusal::busy || limit.is_over(now_periods())) throw Refused(result);
+      if (result.refusal != protocol::Refusal::busy || limit.update_time(now_periods())) throw Refused(result);
     }
   }
 };
@@ -709,7 +709,7 @@ void Device::place_shapes(const Shapes& shapes) {
       self.lose_claim();
       throw self.driven_by_another();
     }
-    if (result != busy || limit.is_over(self.newest_period.load())) throw self.refused("shapes", result);
+    if (result != busy || limit.update_time(self.newest_period.load())) throw self.refused("shapes", result);
   }
 }
 

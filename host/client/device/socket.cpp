@@ -20,7 +20,7 @@ namespace inkwell::device {
 namespace {
 
 /// If a signal interrupts connect(), this function waits for the connection.
-bool has_connected(int descriptor, const addrinfo& address) {
+bool connect_socket(int descriptor, const addrinfo& address) {
   if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return true;
   if (errno != EINTR) return false;
   pollfd connection{descriptor, POLLOUT, 0};
@@ -45,7 +45,7 @@ local::Descriptor connect_to_port(const SocketAddress& server) {
   int reason = 0;
   for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next) {
     local::Descriptor descriptor(socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol));
-    if (descriptor.is_open() && has_connected(descriptor.number(), *address)) {
+    if (descriptor.is_open() && connect_socket(descriptor.number(), *address)) {
       const int yes = 1;  // avoids the delay for small requests
       setsockopt(descriptor.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
       return descriptor;

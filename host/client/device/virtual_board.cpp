@@ -195,7 +195,7 @@ struct VirtualBoard::Implementation {
     return line;
   }
 
-  bool has_exited(int options) {
+  bool reap_process(int options) {
     const std::lock_guard lock(mutex);
     if (!exited && waitpid(process, &exit_status, options) == process) exited = true;
     return exited;
@@ -203,12 +203,12 @@ struct VirtualBoard::Implementation {
 
   void stop() {
     if (process < 0) return;
-    if (!has_exited(WNOHANG)) kill(process, SIGTERM);
+    if (!reap_process(WNOHANG)) kill(process, SIGTERM);
     const auto deadline = Clock::now() + stop_timeout;
-    while (!has_exited(WNOHANG) && Clock::now() < deadline) std::this_thread::sleep_for(5ms);
-    if (!has_exited(WNOHANG)) {
+    while (!reap_process(WNOHANG) && Clock::now() < deadline) std::this_thread::sleep_for(5ms);
+    if (!reap_process(WNOHANG)) {
       kill(process, SIGKILL);
-      while (!has_exited(WNOHANG)) std::this_thread::sleep_for(5ms);
+      while (!reap_process(WNOHANG)) std::this_thread::sleep_for(5ms);
     }
     if (drain.joinable()) drain.join();
     remove_stale_folders();
@@ -261,6 +261,6 @@ std::optional<Endpoint> VirtualBoard::find() const {
 
 ControlClient VirtualBoard::control() const { return ControlClient(control_socket()); }
 
-bool VirtualBoard::is_running() const { return !implementation_->has_exited(WNOHANG); }
+bool VirtualBoard::is_running() const { return !implementation_->reap_process(WNOHANG); }
 
 }  // namespace inkwell::device

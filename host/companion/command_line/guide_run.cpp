@@ -143,7 +143,7 @@ class GuideRun {
   /// Waits until the device has confirmed the guide's parameter changes.
   void settle() {
     auto limit = transaction_limit();
-    while (!guide_.at_rest() && !limit.is_over(device_.session().newest_pose()) &&
+    while (!guide_.at_rest() && !limit.update_time(device_.session().newest_pose()) &&
            guides::observe(device_.session()).connected)
       round();
   }
@@ -180,7 +180,7 @@ class GuideRun {
 };
 
 /// Returns true if the user wants to store the changes. Without a terminal, prints the command that stores the changes.
-bool wants_to_store(const DeviceOptions& options, const Consent& consent, const InterruptGuard& interrupt) {
+bool ask_to_store(const DeviceOptions& options, const Consent& consent, const InterruptGuard& interrupt) {
   if (consent.store) return true;
   if (options.json || consent.yes || isatty(STDIN_FILENO) != 1) {
     if (!options.is_virtual)  // a virtual board exits before another command could reach it
@@ -238,7 +238,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
     if (!failure.empty()) break;
   }
   bool is_stored = false;
-  if (failure.empty() && (has_changed || consent.store) && wants_to_store(options, consent, interrupt)) {
+  if (failure.empty() && (has_changed || consent.store) && ask_to_store(options, consent, interrupt)) {
     try {
       device.store_parameters();
       is_stored = true;

@@ -67,7 +67,7 @@ void GuidedDevice::apply_parameters(const std::vector<device::ParameterChange>& 
            std::ranges::all_of(changes, [&](const auto& change) { return (*held)[change.first] == change.second; });
   };
   while (!holds_them()) {
-    if (limit.is_over(session_->newest_pose()))
+    if (limit.update_time(session_->newest_pose()))
       throw device::Error(
           session_->refusal().value_or("The device did not accept the parameters of the arm description. Try again."));
     std::this_thread::sleep_for(5ms);

@@ -95,7 +95,7 @@ bool bridges_drive(const nlohmann::json& truth) {
   return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>() < still_driving_s;
 }
 
-bool regains_force(BoardRun& board) {
+bool regain_force(BoardRun& board) {
   board.run(0.02);
   if (board.is(State::fault)) {
     // The board refuses the command until the cause is gone, so the command is repeated.

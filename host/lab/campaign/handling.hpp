@@ -30,6 +30,6 @@ void take_by_hand(BoardRun& board, device::Vector3 target_m, double duration_s);
 bool bridges_drive(const nlohmann::json& truth);
 /// Clears the fault, references the arm if necessary, and switches the force on. Returns false if the force stays off
 /// or no device is connected. Throws device::Error if the device disconnects during the call.
-bool regains_force(BoardRun& board);
+bool regain_force(BoardRun& board);
 
 }  // namespace inkwell::campaign

@@ -262,11 +262,11 @@ void clear_first_fault(BoardRun& board, Result& result) {
 }
 
 /// Returns true if the force could be switched on.
-bool tries_to_work(BoardRun& board) {
+bool try_to_work(BoardRun& board) {
   try {
     if (!board.connected() && !board.connect(0.5)) return false;
     board.set({{Parameter::host_timeout_s, 0.5f}});
-    return regains_force(board);
+    return regain_force(board);
   } catch (const device::Error&) {
     return false;
   }
@@ -317,11 +317,11 @@ void recover(BoardRun& board, const Case& the_case, bool could_report, Result& r
     note_fault(board, result, could_report ? result.fault_on_healing : result.detected_as);
   const bool stayed = is_active(the_case.situation) ? board.force_is_on() : result.restarts == 0;
   const bool was_fault = board.is(State::fault);
-  if (tries_to_work(board)) {
+  if (try_to_work(board)) {
     result.recovery = was_fault ? Recovery::clear_fault : stayed ? Recovery::none_needed : Recovery::force_on_again;
   } else {
     board.reset();
-    result.recovery = tries_to_work(board) ? Recovery::board_reset : Recovery::not_recovered;
+    result.recovery = try_to_work(board) ? Recovery::board_reset : Recovery::not_recovered;
   }
   if (!board.pose() || !board.force_is_on()) return;
   const Vector3 true_m = board.true_position_m();

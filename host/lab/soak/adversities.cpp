@@ -56,7 +56,7 @@ bool may_lose_counts(const campaign::CaseFault& put_in) {
   }
 }
 
-bool regains(Bench& bench) {
+bool try_to_regain_force(Bench& bench) {
   try {
     bench.oracle.connected();
     if (!bench.board.connected() && !bench.board.connect(1.0)) return false;
@@ -64,7 +64,7 @@ bool regains(Bench& bench) {
     bench.check_closely();
     bench.pass(0.02);
     bench.oracle.request_force();
-    return campaign::regains_force(bench.board);
+    return campaign::regain_force(bench.board);
   } catch (const device::Error&) {
     return false;
   }
@@ -84,12 +84,12 @@ std::string recover(Bench& bench, Disturbance disturbance) {
   bench.pass(0.05);
   const bool may_reset = disturbance == Disturbance::program || reset_is_the_way(bench);
   std::string way = bench.board.is(State::fault) ? "clear fault" : "force on";
-  bool works = disturbance != Disturbance::program && regains(bench);
+  bool works = disturbance != Disturbance::program && try_to_regain_force(bench);
   if (!works) {
     way = "reset";
     if (!may_reset && !reset_is_the_way(bench)) bench.oracle.complain(Complaint::no_way_back, "only a reset helped");
     bench.board.reset();
-    works = regains(bench);
+    works = try_to_regain_force(bench);
   }
   bench.check_truth();
   bench.check_closely();

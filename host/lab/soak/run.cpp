@@ -45,7 +45,7 @@ class Run {
     bench_.oracle.begin(result.number, kind);
     bool goes_on = true;
     try {
-      goes_on = played(kind, result);
+      goes_on = play_or_restart(kind, result);
     } catch (const SittingOver&) {
       if (result.what.empty()) result.what = "cut off: the sitting is over";
       goes_on = false;
@@ -56,7 +56,7 @@ class Run {
     return goes_on;
   }
 
-  bool played(Kind kind, PhaseResult& result) {
+  bool play_or_restart(Kind kind, PhaseResult& result) {
     try {
       result.what = play(bench_, kind);
       bench_.check_all();

@@ -50,7 +50,7 @@ void FrameLoop::run() {
     if (!is_due(frame)) continue;
     lay_out(frame);
     if (content_.is_over()) break;
-    if (!is_to_be_drawn(frame)) continue;
+    if (!update_evidence(frame)) continue;
     draw(frame);
     show(frame);
     if (frame.is_last) break;
@@ -62,7 +62,7 @@ void FrameLoop::run() {
 
 FrameLoop::Frame FrameLoop::next_frame() {
   // Requests are read before the events, because an answer must reflect all earlier events.
-  const bool is_asked = inspection_ && inspection_->is_asked();
+  const bool is_asked = inspection_ && inspection_->collect_requests();
   const bool is_lively = rhythm_.is_lively(glfwGetTime());
   is_lively ? pacer_.wait() : pacer_.rest();
   if (is_lively || is_asked)
@@ -106,11 +106,11 @@ void FrameLoop::lay_out(Frame& frame) {
                    .panes = imgui_.panes()};
 }
 
-bool FrameLoop::is_to_be_drawn(Frame& frame) {
+bool FrameLoop::update_evidence(Frame& frame) {
   frame.evidence.moves = content_.is_moving();
   frame.evidence.differs =
       frame.picture != on_screen_ || display_.take_lost_picture() || frame.is_last || frame.is_asked;
-  return rhythm_.is_to_be_drawn(frame.evidence, frame.now_s);
+  return rhythm_.record_evidence(frame.evidence, frame.now_s);
 }
 
 void FrameLoop::draw(const Frame& frame) {

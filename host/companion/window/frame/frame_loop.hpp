@@ -96,7 +96,7 @@ class FrameLoop {
   Frame next_frame();
   bool is_due(const Frame& frame) const;
   void lay_out(Frame& frame);
-  bool is_to_be_drawn(Frame& frame);
+  bool update_evidence(Frame& frame);
   void draw(const Frame& frame);
   std::vector<Box> to_be_drawn(const Frame& frame) const;
   void draw_part(const Frame& frame, const Box& box);

@@ -12,7 +12,7 @@ void FrameRhythm::took(double drawing_s) {
   resting_period_now_s_ = std::clamp(drawing_s / resting_share, resting_period_s, resting_period_maximum_s);
 }
 
-bool FrameRhythm::is_to_be_drawn(const FrameEvidence& evidence, double now_s) {
+bool FrameRhythm::record_evidence(const FrameEvidence& evidence, double now_s) {
   laid_out_s_ = now_s;
   if (evidence.input || evidence.moves) lively_until_s_ = now_s + lively_for_s;
   return evidence.moves || evidence.differs;

@@ -15,8 +15,8 @@ class FrameRhythm {
  public:
   /// Returns true if a frame must be laid out now. `something_happened` is true after input or while the device moves.
   bool is_due(bool something_happened, double now_s) const;
-  /// Returns true if the laid-out frame must be drawn.
-  bool is_to_be_drawn(const FrameEvidence& evidence, double now_s);
+  /// Records the evidence of a laid-out frame. Returns true if the frame must be drawn.
+  bool record_evidence(const FrameEvidence& evidence, double now_s);
   /// Sets the reduced rate according to the drawing time of a frame.
   void took(double drawing_s);
   /// Returns true while frames are drawn at the full rate.

@@ -97,7 +97,7 @@ struct Inspection::Implementation {
 Inspection::Inspection(void (*wake)()) : implementation_(std::make_unique<Implementation>(wake)) {}
 Inspection::~Inspection() { notes = nullptr; }
 
-bool Inspection::is_asked() {
+bool Inspection::collect_requests() {
   auto& self = *implementation_;
   const std::scoped_lock lock(self.mutex);
   self.due.insert(self.due.end(), self.asked.begin(), self.asked.end());

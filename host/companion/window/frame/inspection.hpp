@@ -26,8 +26,8 @@ class Inspection {
   Inspection(const Inspection&) = delete;
   Inspection& operator=(const Inspection&) = delete;
 
-  /// Returns true if the next frame must answer a request.
-  bool is_asked();
+  /// Collects the requests for the next frame. Returns true if the next frame must answer a request.
+  bool collect_requests();
   /// Returns true if a picture was requested.
   bool wants_picture() const;
   /// Starts recording items and texts. Adds `origin`, the screen position of the window, to all positions.

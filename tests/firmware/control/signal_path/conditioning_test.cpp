@@ -37,16 +37,16 @@ TEST_CASE("an offset beyond what an amplifier can have is a broken sensor") {
 
 TEST_CASE("the supply is filtered, and its reciprocal is ready and finite even without a supply") {
   SupplyFilter filter;
-  filter.filter(18.0f);
+  filter.add_sample(18.0f);
   CHECK(filter.supply_V == 18.0f);
   CHECK(filter.per_V == doctest::Approx(1.0 / 18.0).scale(0).epsilon(1e-6));
-  filter.filter(12.0f);
+  filter.add_sample(12.0f);
   CHECK(filter.supply_V == doctest::Approx(18.0 - 6.0 / 32));
-  for (int i = 0; i < 320; ++i) filter.filter(0.0f);
+  for (int i = 0; i < 320; ++i) filter.add_sample(0.0f);
   CHECK(filter.supply_V < 0.01f);
   CHECK(filter.per_V == doctest::Approx(1.0));
-  filter.filter(std::numeric_limits<float>::quiet_NaN());
-  filter.filter(17.0f);
+  filter.add_sample(std::numeric_limits<float>::quiet_NaN());
+  filter.add_sample(17.0f);
   CHECK(filter.supply_V == 17.0f);
 }
 

@@ -23,7 +23,7 @@ std::uint16_t counts_of(float reference_V, float analog_supply_V) {
 int readings_until_fault(float analog_supply_V, float true_V, std::uint16_t calibrated_counts) {
   AnalogSupply supply = analog_supply(calibrated_counts);
   for (int reading = 1; reading < never; ++reading)
-    if (supply.is_off(counts_of(true_V, analog_supply_V))) return reading;
+    if (supply.detect_supply_error(counts_of(true_V, analog_supply_V))) return reading;
   return never;
 }
 
@@ -70,11 +70,11 @@ TEST_CASE("twelve wrong looks in a row are borne, and a right one makes up for a
   const std::uint16_t right = counts_of(1.21f, nominal_V), wrong = counts_of(1.21f, 3.0f);
   AnalogSupply supply = analog_supply(right);
   for (int i = 0; i < 10; ++i) {
-    for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(supply.is_off(wrong));
-    CHECK_FALSE(supply.is_off(right));
+    for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(supply.detect_supply_error(wrong));
+    CHECK_FALSE(supply.detect_supply_error(right));
   }
-  for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(supply.is_off(wrong));
-  for (int reading = 0; reading < 10; ++reading) CHECK(supply.is_off(wrong));
+  for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(supply.detect_supply_error(wrong));
+  for (int reading = 0; reading < 10; ++reading) CHECK(supply.detect_supply_error(wrong));
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ template <class Count>
 std::uint32_t periods_until_dead(Count count, std::uint32_t begin = 0, std::uint32_t every = 1) {
   EncoderWire wire;
   for (std::uint32_t period = 0; period < never; period += every)
-    if (wire.is_dead(count(static_cast<float>(period) * protocol::servo_period_s), begin + period)) return period;
+    if (wire.detect_dead_wire(count(static_cast<float>(period) * protocol::servo_period_s), begin + period))
+      return period;
   return never;
 }
 
@@ -95,10 +96,10 @@ TEST_CASE("as long as it goes to and fro a dead wire is found again and again, a
   int found = 0;
   std::uint32_t period = 0;
   for (; period < periods_in(0.601f); ++period)
-    found += wire.is_dead(dithering(1'000.0f)(static_cast<float>(period) * protocol::servo_period_s), period);
+    found += wire.detect_dead_wire(dithering(1'000.0f)(static_cast<float>(period) * protocol::servo_period_s), period);
   CHECK(found == 10);  // 120 changes in 60 ms
   const std::uint16_t last = wire.count;
-  for (; period < periods_in(0.8f); ++period) CHECK_FALSE(wire.is_dead(last, period));
+  for (; period < periods_in(0.8f); ++period) CHECK_FALSE(wire.detect_dead_wire(last, period));
 }
 
 TEST_CASE("looks that are skipped, and a count of periods that wraps, change nothing") {

@@ -24,7 +24,7 @@ bool is_detected(Counts counts, Current current_A, bool held = false, std::int32
   for (int reading = 0; reading < readings_per_s; ++reading) {
     const float time_s = static_cast<float>(reading) / readings_per_s;
     const auto now_periods = static_cast<std::uint32_t>(3 * reading);
-    if (encoder.is_stuck(counts(time_s), current_A(time_s), now_periods, held, moving_A)) return true;
+    if (encoder.detect_stuck_encoder(counts(time_s), current_A(time_s), now_periods, held, moving_A)) return true;
   }
   return false;
 }
@@ -81,8 +81,8 @@ TEST_CASE("what changed up to the look in which a joint breaks loose does not co
   for (int reading_of_step = 2'300; reading_of_step < 2'600; ++reading_of_step) {
     StuckEncoder encoder{.counts = 100};
     for (int reading = 0; reading < 6'000; ++reading)
-      detected += encoder.is_stuck(reading < reading_of_step ? 100 : 102, current_A(reading),
-                                   static_cast<std::uint32_t>(3 * reading), false, 0.7f);
+      detected += encoder.detect_stuck_encoder(reading < reading_of_step ? 100 : 102, current_A(reading),
+                                               static_cast<std::uint32_t>(3 * reading), false, 0.7f);
   }
   CHECK(detected == 0);
 }
@@ -120,7 +120,8 @@ TEST_CASE("while the arm is held by anything nothing counts, and what was before
   StuckEncoder encoder;
   std::uint32_t now_periods = 0;
   const auto reading = [&](float current_A, bool held) {
-    for (int i = 0; i < 1'000; ++i) CHECK_FALSE(encoder.is_stuck(7, current_A, now_periods += 3, held, moving_A));
+    for (int i = 0; i < 1'000; ++i)
+      CHECK_FALSE(encoder.detect_stuck_encoder(7, current_A, now_periods += 3, held, moving_A));
   };
   reading(0.0f, false);
   reading(2.5f, false);

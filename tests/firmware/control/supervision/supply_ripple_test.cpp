@@ -25,7 +25,8 @@ template <class Supply>
 std::uint32_t periods_until_ripple(Supply supply_V, std::uint32_t begin = 0, std::uint32_t every = 1) {
   SupplyRipple ripple = ripple_check;
   for (std::uint32_t period = 0; period < never; period += every)
-    if (ripple.ripples(counts_of(supply_V(static_cast<float>(period) * protocol::servo_period_s)), begin + period))
+    if (ripple.detect_ripple(counts_of(supply_V(static_cast<float>(period) * protocol::servo_period_s)),
+                             begin + period))
       return period;
   return never;
 }
@@ -70,14 +71,14 @@ TEST_CASE("ripple lasts as long as the supply swings, and is over a tenth of a s
   SupplyRipple ripple = ripple_check;
   std::uint32_t period = 0;
   for (; period < periods_in(0.5f); ++period) {
-    const bool found =
-        ripple.ripples(counts_of(swing(3.0f, 100.0f)(static_cast<float>(period) * protocol::servo_period_s)), period);
+    const bool found = ripple.detect_ripple(
+        counts_of(swing(3.0f, 100.0f)(static_cast<float>(period) * protocol::servo_period_s)), period);
     if (period > periods_in(0.05f)) CHECK(found);
   }
-  for (; period < periods_in(0.55f); ++period) ripple.ripples(counts_of(nominal_V), period);
-  CHECK(ripple.ripples(counts_of(nominal_V), period));
-  for (; period < periods_in(0.601f); ++period) ripple.ripples(counts_of(nominal_V), period);
-  CHECK_FALSE(ripple.ripples(counts_of(nominal_V), period));
+  for (; period < periods_in(0.55f); ++period) ripple.detect_ripple(counts_of(nominal_V), period);
+  CHECK(ripple.detect_ripple(counts_of(nominal_V), period));
+  for (; period < periods_in(0.601f); ++period) ripple.detect_ripple(counts_of(nominal_V), period);
+  CHECK_FALSE(ripple.detect_ripple(counts_of(nominal_V), period));
 }
 
 TEST_CASE("looks that are skipped, and a count of periods that wraps, change nothing") {
@@ -88,9 +89,9 @@ TEST_CASE("looks that are skipped, and a count of periods that wraps, change not
   // The mean follows the supply with a time constant of `within_periods`.
   for (const std::uint32_t every : {1u, 7u}) {
     SupplyRipple ripple = ripple_check;
-    ripple.ripples(counts_of(12.0f), 0);
+    ripple.detect_ripple(counts_of(12.0f), 0);
     for (std::uint32_t period = every; period <= SupplyRipple::within_periods; period += every)
-      ripple.ripples(counts_of(nominal_V), period);
+      ripple.detect_ripple(counts_of(nominal_V), period);
     const auto mean_counts = static_cast<float>(ripple.mean_counts) / SupplyRipple::mean_periods;
     CHECK(mean_counts * step_V == doctest::Approx(nominal_V - 6.0f / std::numbers::e_v<float>).epsilon(0.01));
   }

@@ -12,10 +12,10 @@ using namespace std::chrono_literals;
 TEST_CASE("a limit counts board time, however long the computer takes for it") {
   device::BoardTimeout limit(1.0, 2s);
   const std::chrono::steady_clock::time_point begin{};
-  CHECK_FALSE(limit.is_over(5'000, begin));
-  CHECK_FALSE(limit.is_over(10'000, begin + 1900ms));
-  CHECK_FALSE(limit.is_over(25'000, begin + 3800ms));
-  CHECK(limit.is_over(25'001, begin + 3900ms));
+  CHECK_FALSE(limit.update_time(5'000, begin));
+  CHECK_FALSE(limit.update_time(10'000, begin + 1900ms));
+  CHECK_FALSE(limit.update_time(25'000, begin + 3800ms));
+  CHECK(limit.update_time(25'001, begin + 3900ms));
 }
 
 TEST_CASE("wall time counts while board time does not pass") {
@@ -24,8 +24,8 @@ TEST_CASE("wall time counts while board time does not pass") {
   std::optional<std::int64_t> now_periods;
   SUBCASE("because no pose came yet") {}
   SUBCASE("because the board is paused") { now_periods = 100; }
-  CHECK_FALSE(limit.is_over(now_periods, begin));
-  CHECK_FALSE(limit.is_over(now_periods, begin + 2s));
-  CHECK(limit.is_over(now_periods, begin + 2001ms));
-  CHECK_FALSE(limit.is_over(101, begin + 3s));  // board time advances again
+  CHECK_FALSE(limit.update_time(now_periods, begin));
+  CHECK_FALSE(limit.update_time(now_periods, begin + 2s));
+  CHECK(limit.update_time(now_periods, begin + 2001ms));
+  CHECK_FALSE(limit.update_time(101, begin + 3s));  // board time advances again
 }

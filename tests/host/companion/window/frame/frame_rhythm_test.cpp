@@ -14,7 +14,7 @@ int frames_drawn(const FrameEvidence& evidence, double drawing_s = 0.0) {
   int drawn = 0;
   for (int i = 0; i < 600; ++i) {
     const double now_s = i / 60.0;
-    if (rhythm.is_due(evidence.input || evidence.moves, now_s) && rhythm.is_to_be_drawn(evidence, now_s)) ++drawn;
+    if (rhythm.is_due(evidence.input || evidence.moves, now_s) && rhythm.record_evidence(evidence, now_s)) ++drawn;
   }
   return drawn;
 }
@@ -31,11 +31,11 @@ TEST_CASE("motion is drawn at the full rate, resting signals seldom, the same pi
 
 TEST_CASE("input wakes the window at once, and it stays awake for a moment") {
   FrameRhythm rhythm;
-  rhythm.is_to_be_drawn({}, 10.0);
+  rhythm.record_evidence({}, 10.0);
   CHECK_FALSE(rhythm.is_lively(10.01));
   CHECK_FALSE(rhythm.is_due(false, 10.01));
   CHECK(rhythm.is_due(true, 10.01));
-  CHECK(rhythm.is_to_be_drawn({.input = true, .differs = true}, 10.01));
+  CHECK(rhythm.record_evidence({.input = true, .differs = true}, 10.01));
   CHECK(rhythm.is_due(false, 10.02));
   CHECK(rhythm.is_lively(10.01 + 0.9 * FrameRhythm::lively_for_s));
   CHECK_FALSE(rhythm.is_lively(10.01 + 1.1 * FrameRhythm::lively_for_s));
