@@ -1,8 +1,7 @@
-// Structure of board facts, and the constants of all boards.
+// Types and common constants of board facts.
 //
-// This file defines no registers. The firmware configures the chip from the facts of a board. The virtual board uses
-// the same facts. The header board/checks.hpp rejects invalid facts. Section titles refer to RM0090 (reference manual)
-// and to the STM32F405 data sheet (tables of alternate functions).
+// The firmware and the virtual board read the facts of a board. The header checks.hpp rejects invalid facts. Section
+// titles refer to RM0090 (reference manual) and to the STM32F405 data sheet (tables of alternate functions).
 #pragma once
 
 // The following steps add a board.
@@ -51,7 +50,6 @@ struct AnalogInput {
   std::uint8_t channel;  ///< ADC channel number
 };
 
-/// Name of a board fact and its pin.
 struct PinUse {
   constexpr PinUse(std::string_view fact, Pin plain) : name(fact), pin(plain), function("-") {}
   constexpr PinUse(std::string_view fact, PeripheralPin peripheral)
@@ -100,9 +98,9 @@ inline constexpr float encoder_filter_s =
 // ---- bridges -----------------------------------------------------------------------------------------
 
 // Both legs of a bridge switch at pwm_Hz with center-aligned PWM. For a relative motor voltage u, the leg duty cycles
-// are (1 + u) / 2 and (1 - u) / 2. The motor voltage consists of pulses at twice pwm_Hz, and all pulses have the same
-// sign. In the middle of each zero vector, the current equals its mean. In the middle of each zero vector, the timers
-// reverse and the ADCs sample. Locked antiphase PWM at the control rate would cause 12 times more ripple.
+// are (1 + u) / 2 and (1 - u) / 2. The motor voltage consists of unipolar pulses at twice pwm_Hz. In the middle of each
+// zero vector, the current equals its mean. In the middle of each zero vector, the timers reverse and the ADCs sample.
+// Locked antiphase PWM at the control rate would cause 12 times more ripple.
 
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr std::uint32_t pwm_periods_per_servo_period = 3;
@@ -136,8 +134,8 @@ inline constexpr std::uint32_t adc_counts = 4096;
 inline constexpr float adc_step_V = adc_reference_V / adc_counts;
 inline constexpr float shunt_amplifier_offset_V = adc_reference_V / 2;  ///< output at zero current
 
-/// An injected conversion takes 3 cycles of sampling and 12 cycles of conversion. The latency from the update to the
-/// sampling is at most 3 cycles (data sheet, ADC characteristics, injected trigger conversion latency).
+/// An injected conversion takes 3 cycles of sampling and 12 cycles of conversion. The latency from a timer update to
+/// the sampling is at most 3 cycles (data sheet, ADC characteristics, injected trigger conversion latency).
 inline constexpr float injected_conversion_s = 15.0f / adc_Hz;
 inline constexpr float injected_latency_s = 3.0f / adc_Hz;
 inline constexpr float injected_sampling_s = 3.0f / adc_Hz;
@@ -147,25 +145,25 @@ static_assert(injected_latency_s + injected_sampling_s < time_to_next_edge_s(dut
 
 // ---- a board -------------------------------------------------------------------------------------------
 
-/// Wiring and components of one board. Each board folder defines one constant of this type. README.md in this folder
-/// describes the wiring and the components for assembly.
+/// Wiring and components of one board. Each board folder defines one constant of this type.
 struct Facts {
   std::string_view name;  ///< name of the folder
 
   EncoderWiring encoders[3];
   BridgeWiring bridges[3];
   /// A high level enables the bridges for `bridge_hold_s` after each rising edge of the heartbeat. If the processor
-  /// stops with this pin high, a monostable disables the bridges. A pull-down on the board keeps the bridges off during
-  /// reset and while the boot loader runs. The boot loader must not pull up or drive this pin (AN2606).
+  /// stops while `bridge_enable` is high, a monostable disables the bridges. A pull-down on the board keeps the bridges
+  /// off during reset and while the boot loader runs. The boot loader must not pull up or drive `bridge_enable`
+  /// (AN2606).
   Pin bridge_enable;
   /// While the bridges are on, the heartbeat rises with each control interrupt and falls before the interrupt returns.
   /// The pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
   Pin bridge_heartbeat;
-  /// The monostable output is connected to the bridge enable inputs. The bridges can switch only while this output is
-  /// high.
+  /// The monostable output is connected to the bridge enable inputs. The bridges can switch only while the monostable
+  /// output is high.
   Pin bridge_hold;
-  /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins. A low level switches
-  /// off the outputs of the pin's timer in hardware (RM0090, "Using the break function").
+  /// Open-drain fault output of the bridges, active low. The fault wire is connected to a break input of TIM1 and to a
+  /// break input of TIM8. A low level switches the timer outputs off in hardware (RM0090, "Using the break function").
   PeripheralPin bridge_fault_tim1, bridge_fault_tim8;
   AnalogInput motor_current[3];  ///< ADC n converts the current of motor n; all ADCs convert simultaneously
   /// The regular sequence of ADC1 converts the gimbal potentiometers (yaw, pitch, roll) and the supply.

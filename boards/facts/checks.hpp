@@ -22,7 +22,7 @@ constexpr bool package_has_pins(const Facts& facts) {
   return true;
 }
 
-/// Returns true if the pin of an analog input has the given ADC channel (data sheet, pin definitions, "ADC123_INx" and
+/// Returns true if `input.pin` has the ADC channel `input.channel` (data sheet, pin definitions, "ADC123_INx" and
 /// "ADC12_INx").
 constexpr bool is_at_pin(const AnalogInput& input) {
   const auto [port, number] = input.pin;
