@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t stack_bytes_searched = 4096;
 
-/// True if the instruction before `address` is BL, or BLX with a register (ARMv7-M, A7.7.18 and A7.7.19).
+/// Returns true if the instruction before `address` is BL, or BLX with a register (ARMv7-M, A7.7.18 and A7.7.19).
 bool is_after_call(std::uint32_t address, const MemoryReader& word) {
   const auto half_word = [&](std::uint32_t at) { return word(at & ~3u) >> 8 * (at & 2) & 0xFFFFu; };
   if (address < 4) return false;

@@ -25,7 +25,7 @@ std::string without_escapes(std::string_view text) {
 }  // namespace
 
 std::optional<GdbPackets::Received> GdbPackets::take() {
-  // Between packets, all bytes except Ctrl-C are ignored. TCP acknowledgments need no reply.
+  // Between packets, all bytes except Ctrl-C are ignored.
   const auto begin = bytes_.find_first_of(std::string{'$', ctrl_c});
   bytes_.erase(0, begin);
   if (bytes_.empty()) return std::nullopt;

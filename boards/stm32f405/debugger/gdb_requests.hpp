@@ -78,7 +78,7 @@ using Request =
     std::variant<Answered, WhyStopped, ReadRegisters, WriteRegisters, ReadRegister, WriteRegister, ReadMemory,
                  WriteMemory, ChangeBreakpoint, ChangeWatchPoint, Resume, LetGo, StopAcknowledging, Monitor>;
 
-/// Parses the payload of a packet. Any input is allowed; for malformed packets the result is Answered with an error.
+/// Parses the payload of a packet. A malformed packet results in `Answered` with an error.
 Request request_of(std::string_view packet);
 
 }  // namespace inkwell::virtual_board::gdb

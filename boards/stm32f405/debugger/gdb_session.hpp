@@ -15,17 +15,17 @@ class GdbSession {
   /// `chip` must be in exact mode and must outlive the session.
   explicit GdbSession(Chip& chip) : chip_(chip) {}
 
-  /// Call this when GDB has connected. The processor stops.
+  /// Call this function when GDB has connected. The processor stops.
   void attach();
-  /// Call this when GDB has disconnected or detached. The processor continues.
+  /// Call this function when GDB has disconnected or detached. The processor continues.
   void detach();
   bool attached() const { return attached_; }
-  /// True while GDB has stopped board time.
+  /// Returns true while GDB has stopped board time.
   bool halted() const { return attached_ && halted_; }
 
   /// Handles received bytes and returns the bytes of the reply.
   std::string receive(std::string_view bytes);
-  /// Call this when run_until() has returned. Returns the stop reply for GDB.
+  /// Call this function when run_until() has returned. Returns the stop reply for GDB.
   std::string report(Stop stop);
 
  private:
@@ -33,7 +33,7 @@ class GdbSession {
     WatchPoint point;
     char kind;  ///< of the packet: '2' write, '3' read, '4' both
   };
-  // Each function returns the reply to GDB. The reply is empty if the request makes the processor run.
+  // Each carry_out() returns the reply to GDB. The reply is empty if the request makes the processor run.
   static std::string carry_out(const gdb::Answered& parsed);
   std::string carry_out(gdb::WhyStopped parsed);
   std::string carry_out(gdb::ReadRegisters parsed);

@@ -12,8 +12,7 @@ namespace inkwell::virtual_board {
 class Symbols {
  public:
   Symbols() = default;
-  /// Reads the symbol table of an ELF file that the chip has loaded. Without a valid symbol table, name() returns an
-  /// empty string.
+  /// Reads the symbol table of an ELF file. Without a valid symbol table, name() returns an empty string.
   explicit Symbols(const std::filesystem::path& elf);
 
   /// Returns the function and offset of `address`, such as "main+0x12", or an empty string.

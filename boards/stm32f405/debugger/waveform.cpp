@@ -54,7 +54,7 @@ Waveform::~Waveform() {
   set_time(chip_.now());
 }
 
-// An exception may be up to one processor slice later than the next pin change. Time in the file must never decrease.
+// Time in the file must never decrease.
 void Waveform::set_time(Ticks when) {
   if (begun_ && when <= written_until_) return;
   begun_ = true;

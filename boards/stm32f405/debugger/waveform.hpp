@@ -15,8 +15,8 @@ namespace inkwell::virtual_board {
 
 class Waveform {
  public:
-  /// Throws std::runtime_error if the file cannot be written. An empty `pins` selects all pins. A Waveform records the
-  /// pins and exceptions of `chip` until its destruction. `chip` must outlive the Waveform.
+  /// Throws std::runtime_error if the file cannot be written. An empty `pins` selects all pins. A Waveform records pins
+  /// and exceptions from its construction to its destruction. `chip` must outlive the Waveform.
   Waveform(const std::filesystem::path& path, std::vector<PinName> pins, Chip& chip);
   ~Waveform();
   Waveform(const Waveform&) = delete;
