@@ -35,8 +35,8 @@ constexpr BusWindow window() {
   return {base, bytes, read_window<base>, write_window<base>};
 }
 
-/// Returns the smallest allowed write in bytes (RM0090). Each row applies to all peripherals whose name starts with
-/// `begin`. Peripherals that accept byte writes, such as serial ports, have no row.
+/// Returns the width of the narrowest allowed write, in bytes (RM0090). Each row applies to all peripherals whose name
+/// starts with `begin`. Peripherals that accept byte writes, such as serial ports, have no row.
 unsigned narrowest_write(std::string_view name) {
   struct Row {
     std::string_view begin;

@@ -18,14 +18,14 @@ class Bus {
  public:
   Bus(Machine& machine, Processor& processor, SystemControl& system_control, const StartingClock& starting_clock);
 
-  /// While `*enable_register & enable_mask` is 0, the peripheral has no clock. Reads then return 0, and writes are
-  /// ignored.
+  /// While `*enable_register & enable_mask` is 0, the peripheral has no clock. Without a clock, reads return 0 and
+  /// writes are ignored.
   void add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
            const std::uint32_t* enable_register = nullptr, std::uint32_t enable_mask = 0);
   void reset_peripherals();
   std::vector<RegisterMap> register_maps() const;
 
-  /// Address windows of a bus. The bus may be constructed later.
+  /// `bus` may be constructed after this call.
   static BusWindows windows_of(Bus& bus) { return {all_windows, &bus}; }
 
   std::uint32_t read(std::uint32_t address, unsigned size);

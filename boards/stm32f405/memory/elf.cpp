@@ -46,7 +46,7 @@ void check_header(const Elf32_Ehdr& header, const std::string& name) {
 struct Image {
   std::span<const char> file;
   std::vector<Elf32_Phdr> segments;
-  /// Returns the byte at `address`, from the last segment that contains the address, or 0xFF (erased flash).
+  /// Returns the byte at `address`, or 0xFF (erased flash) outside of all segments.
   std::uint8_t byte(std::uint32_t address) const {
     std::uint8_t value = 0xFF;
     for (const auto& segment : segments)

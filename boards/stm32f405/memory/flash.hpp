@@ -64,7 +64,7 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   /// Interrupts the power during flash operation number `operation`, counted from 1; 0 disables the interruption. Power
   /// returns immediately.
   void cut_power_at(std::uint64_t operation) { cut_at_ = operation; }
-  /// Call this when the supply voltage or the clock has changed.
+  /// Call this function when the supply voltage or the clock has changed.
   void check_wait_states();
 
  protected:

@@ -11,10 +11,10 @@
 
 namespace inkwell::virtual_board {
 
-/// Bytes of the memories after power-on: the flash is erased.
+/// Contents of the memories.
 struct MemoryBytes {
   MemoryBytes();
-  // Unicorn requires page-aligned sizes with pages of 4 KB. The host memory needs no alignment.
+  // Unicorn requires sizes that are multiples of 4 KB.
   std::vector<std::uint8_t> flash, sram, ccm, system;
 };
 
@@ -25,9 +25,8 @@ class Memory final : private MemoryBytes, public AddressSpace {
   Memory& operator=(const Memory&) = delete;
 };
 
-/// Erases the flash sectors that the load segments of an ELF file overlap, and writes the segments at their physical
-/// addresses. Throws ChipError with the name of the file. Returns a warning about a questionable stack pointer, or an
-/// empty string.
+/// Writes the load segments of an ELF file to their physical addresses. The sectors of the segments are erased first.
+/// Throws ChipError if the file is invalid. Returns a warning about a questionable stack pointer, or an empty string.
 std::string program_elf(std::span<const char> file, const std::string& name, AddressSpace& memory);
 
 }  // namespace inkwell::virtual_board

@@ -5,17 +5,16 @@
 
 namespace inkwell::virtual_board {
 
-/// The most recently enabled peripheral clocks start some cycles after their enable bits are set. RCC sets this state,
-/// and the bus reads it.
+/// A peripheral clock starts some cycles after its enable bit is set. RCC calls start(), and the bus calls includes().
 class StartingClock {
  public:
-  /// `mask` selects the bits of the enable register that were set. `runs_at` is a cycle of the core.
+  /// `mask` selects the bits of the enable register that were set. `runs_at` is the core cycle at which the clocks run.
   void start(const std::uint32_t* enable_register, std::uint32_t mask, std::uint64_t runs_at) {
     register_ = enable_register;
     mask_ = mask;
     runs_at_ = runs_at;
   }
-  /// True if the clock of a peripheral is enabled but has not started yet.
+  /// Returns true if the clock of a peripheral is enabled but has not started yet.
   bool includes(const std::uint32_t* enable_register, std::uint32_t mask, std::uint64_t cycle) const {
     return cycle < runs_at_ && enable_register == register_ && (mask_ & mask) != 0;
   }
