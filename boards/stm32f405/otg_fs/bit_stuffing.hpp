@@ -15,7 +15,7 @@ struct StuffedByte {
 
 inline constexpr unsigned ones_before_stuffing = 6;
 
-/// Table, indexed by the number of preceding 1 bits and by the byte value.
+/// The indices are the number of preceding 1 bits and the byte value.
 inline constexpr auto stuffed_bytes = [] {
   std::array<std::array<StuffedByte, 256>, ones_before_stuffing> table{};
   for (unsigned before = 0; before < ones_before_stuffing; ++before)
@@ -65,8 +65,8 @@ inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
   return stuffed;
 }
 
-/// Largest possible number of stuffed bits. The frame schedule uses this number and is therefore independent of the
-/// data.
+/// Largest possible number of stuffed bits. The frame schedule uses the largest number, so that the schedule is
+/// independent of the data.
 constexpr std::uint64_t stuffed_bits_maximum(std::size_t payload_bytes) { return (payload_bytes * 8 + 24 + 5) / 6; }
 
 }  // namespace inkwell::virtual_board

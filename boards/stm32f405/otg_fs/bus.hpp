@@ -15,7 +15,7 @@ inline constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
 /// Largest data packet of a full-speed device. Only isochronous packets may exceed 64 bytes.
 inline constexpr std::size_t full_speed_packet_maximum = 1023;
 
-/// Result of a transaction as the host receives it (USB 2.0, section 8.4.5).
+/// Result of a transaction at the host (USB 2.0, section 8.4.5).
 enum class Handshake : std::uint8_t {
   ack,      ///< the data was transferred
   nak,      ///< not ready
@@ -30,7 +30,6 @@ struct InReply {
   std::size_t length = 0;
 };
 
-/// The device end of the cable.
 class BusDevice {
  public:
   virtual ~BusDevice() = default;
@@ -44,17 +43,17 @@ class BusDevice {
   virtual void begin_reset() = 0;
   virtual void end_reset() = 0;
   virtual void start_of_frame(std::uint16_t frame_number) = 0;
-  /// Called when the bus has been idle for 3 ms.
+  /// Reports that the bus has been idle for 3 ms.
   virtual void suspend() = 0;
-  /// Called when the host drives resume signaling, before the next frame.
+  /// Reports that the host drives resume signaling.
   virtual void resume() = 0;
 
   virtual Handshake setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) = 0;
   virtual Handshake out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) = 0;
   /// Answers an IN token. The returned packet is on the wire until finish_in() is called.
   virtual InReply in(unsigned address, unsigned endpoint, std::span<std::byte, full_speed_packet_maximum> data) = 0;
-  /// Called when the host acknowledges the packet from in(). Returns false if a FIFO flush or a reset has damaged the
-  /// packet.
+  /// Reports that the host has acknowledged the packet from in(). Returns false if a FIFO flush or a reset has damaged
+  /// the packet.
   virtual bool finish_in(unsigned endpoint) = 0;
 };
 

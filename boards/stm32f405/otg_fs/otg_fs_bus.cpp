@@ -14,7 +14,7 @@ namespace {
 /// architecture").
 constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
-/// Longest time within which a device must release the pull-up after VBUS is lost (USB 2.0, section 7.1.5).
+/// Longest time from the loss of VBUS to the release of the pull-up (USB 2.0, section 7.1.5).
 constexpr Ticks pull_up_release = 10 * ticks_per_s;
 /// Bit times from an IN token to the end of the handshake time-out, excluding the data and stuffed bits.
 constexpr Ticks in_transaction_bits = 8 * 14;

@@ -22,8 +22,8 @@ bool is_fifo_of(std::uint32_t offset, unsigned endpoint) {
   return offset >= otg_fifo_base && (offset - otg_fifo_base) / otg_fifo_window_bytes == endpoint;
 }
 bool is_transmit_size(std::uint32_t offset) { return offset == otg.dieptxf0 || otg.dieptxf.covers(offset); }
-/// True for the control register and the transfer-size register of this IN endpoint. The interrupt register is
-/// excluded, because the firmware may clear interrupt flags at any time.
+/// Returns true if `offset` is the control register or the transfer-size register of the IN endpoint. The interrupt
+/// register is excluded, because the firmware may clear interrupt flags at any time.
 bool is_of_in(std::uint32_t offset, unsigned endpoint) {
   const std::uint32_t of_device = offset - otg_device_base;
   return (otg.diepctl.covers(of_device) && otg.diepctl.index(of_device) == endpoint) ||

@@ -13,8 +13,8 @@ namespace {
 constexpr Ticks millisecond = ticks_per_s / 1000;
 /// RM0090, OTG_FS_GUSBCFG: FDMOD.
 constexpr Ticks mode_change_duration = 25 * millisecond;
-/// A host resets the device only after D+ has been high for 100 ms. Firmware must finish the USB settings before this
-/// reset.
+/// A host resets the device only after D+ has been high for 100 ms. Firmware must finish the USB settings before the
+/// bus reset.
 constexpr Ticks connection_settles = 50 * millisecond;
 
 /// RM0090, table "TRDT values".
@@ -299,7 +299,7 @@ bool OtgFsDevice::clock_is_exact() const {
   return chip_.usb_Hz() >= nominal_Hz - tolerance_Hz && chip_.usb_Hz() <= nominal_Hz + tolerance_Hz;
 }
 
-// Checks all conditions for a host to detect the device.
+// Checks whether a host can detect the device.
 void OtgFsDevice::check_connection() {
   if (!pulled_up_) return;
   if (!pins_connected()) rules_.violate(Rule::usb_pins);
@@ -308,7 +308,7 @@ void OtgFsDevice::check_connection() {
   if (!otg.gusbcfg.fdmod.in(usb_configuration_) && !chip_.has_function('A', 10, otg_fs)) rules_.violate(Rule::usb_mode);
 }
 
-// After a bus reset, checks all conditions for transfers.
+// Checks whether the settings allow transfers.
 void OtgFsDevice::check_core() {
   if (!otg.gusbcfg.physel.in(usb_configuration_))
     rules_.violate(Rule::usb_transceiver);
@@ -317,7 +317,7 @@ void OtgFsDevice::check_core() {
   if (otg.dcfg.dspd.of(device_configuration_) != otg_full_speed) rules_.violate(Rule::usb_speed);
 }
 
-// Called for each answered packet, because the firmware may set TRDT after speed enumeration.
+// TRDT is checked at each answered packet, because the firmware may set TRDT after speed enumeration.
 void OtgFsDevice::check_turnaround() {
   if (otg.gusbcfg.trdt.of(usb_configuration_) < turnaround_needed(chip_.hclk_Hz()))
     rules_.violate(Rule::usb_turnaround);

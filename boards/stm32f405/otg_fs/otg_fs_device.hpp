@@ -1,6 +1,6 @@
 // The OTG_FS core of the STM32F405 in device mode (RM0090, chapter "USB on-the-go full-speed"). The model has a
 // register interface to the processor and a transaction interface to the bus. Host mode, DMA and isochronous endpoints
-// are not modeled. The log reports the use of unmodeled features and violations of the manual by firmware.
+// are not modeled.
 #pragma once
 
 #include <array>
@@ -140,8 +140,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void write_usb_configuration(std::uint32_t value);
   bool pins_connected() const;
   bool clock_is_exact() const;
-  /// True if the firmware has not yet acknowledged a bus reset. Actions that were valid before the reset are allowed
-  /// until the firmware acknowledges the reset.
+  /// Returns true if the firmware has not yet acknowledged a bus reset. Actions that were valid before the reset are
+  /// allowed until the firmware acknowledges the reset.
   bool reset_is_unseen() const;
   void check_connection();
   void check_bus_power();
@@ -158,7 +158,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   const ChipState& chip_;
   TriggerLines& triggers_;
 
-  // Registers. The members have the names of RM0090, written out in words.
+  // Registers.
   std::uint32_t otg_interrupts_ = 0;                           // GOTGINT
   std::uint32_t bus_configuration_ = 0;                        // GAHBCFG
   std::uint32_t usb_configuration_ = 0;                        // GUSBCFG

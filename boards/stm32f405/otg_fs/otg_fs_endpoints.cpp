@@ -9,8 +9,7 @@ namespace inkwell::virtual_board {
 
 namespace {
 
-/// Longest allowed time from the check for an empty receive FIFO to the write that clears NAK. This time is sufficient
-/// for a few instructions with interrupts disabled.
+/// Longest allowed time from the check for an empty receive FIFO to the write that clears NAK.
 constexpr Ticks check_before_clearing_nak = ticks_per_s / 1'000'000;
 
 constexpr std::uint32_t stored_in_bits(unsigned endpoint) {
@@ -25,7 +24,7 @@ constexpr std::uint32_t stored_out_bits(unsigned endpoint) {
   return endpoint == 0 ? common : common | control.usbaep.mask() | control.eptyp.mask();
 }
 
-// The size and packet count fields of endpoint 0 are narrower than those of other endpoints.
+// Endpoint 0 has narrower size and packet count fields than other endpoints.
 constexpr std::uint32_t transfer_bytes(std::uint32_t size, unsigned endpoint) {
   return otg.dieptsiz.xfrsiz.of(size) & (endpoint == 0 ? 0x7F : otg.dieptsiz.xfrsiz.maximum());
 }
@@ -189,7 +188,7 @@ bool OtgFsDevice::transmit_empty_level(unsigned endpoint) const {
   return transmit_[fifo].count() <= level;
 }
 
-// FIFO regions must not overlap in the packet memory. The core does not detect an overlap, and data is overwritten.
+// FIFO regions must not overlap in the packet memory. The core does not detect an overlap.
 void OtgFsDevice::note_memory_layout() {
   if (!layout_changed_) return;
   layout_changed_ = false;
@@ -237,7 +236,7 @@ void OtgFsDevice::write_out_endpoint(std::uint32_t offset, std::uint32_t value) 
     out_[otg.doepint.index(offset)].interrupts &= ~value;
   } else if (otg.doeptsiz.covers(offset)) {
     const unsigned number = otg.doeptsiz.index(offset);
-    // DOEPTSIZ0 also contains the SETUP packet count, which the firmware writes while endpoint 0 is enabled.
+    // Firmware may write DOEPTSIZ0 while endpoint 0 is enabled, because DOEPTSIZ0 contains the SETUP packet count.
     if (number != 0 && otg.doepctl.epena.in(out_[number].control))
       rules_.violate(Rule::usb_out_size_while_enabled, "OUT " + std::to_string(number));
     out_[number].packets = out_packets(value, number);

@@ -1,12 +1,12 @@
 // Registers of the OTG_FS core (RM0090, "OTG_FS control and status registers"). Register offsets are relative to the
-// base of their block.
+// base of the register block.
 #pragma once
 
 #include "boards/stm32f405/core/register_map.hpp"
 
 namespace inkwell::virtual_board {
 
-/// GRXSTSR and GRXSTSP. Reading GRXSTSP also pops the FIFO entry.
+/// GRXSTSR and GRXSTSP. A read of GRXSTSP pops the FIFO entry.
 struct OtgReceiveStatus : Register {
   Field epnum{"EPNUM", 0, 4, Access::r}, bcnt{"BCNT", 4, 11, Access::r}, dpid{"DPID", 15, 2, Access::r},
       pktsts{"PKTSTS", 17, 4, Access::r}, frmnum{"FRMNUM", 21, 4, Access::r};
@@ -144,12 +144,11 @@ struct OtgPowerRegisters {
 inline constexpr OtgPowerRegisters otg_power;
 inline constexpr std::uint32_t otg_power_base = 0xE00;
 
-/// This structure contains all register blocks, for code that needs no addresses.
+/// This structure contains all register blocks.
 struct OtgRegisters : OtgGlobalRegisters, OtgDeviceRegisters, OtgPowerRegisters {};
 inline constexpr OtgRegisters otg;
 
-/// Read-only synthesis configuration of the core. The manual does not describe these registers, but common drivers read
-/// them.
+/// Read-only synthesis configuration of the core. Common drivers read these undocumented registers.
 struct OtgSynthesisRegisters {
   Register gsnpsid{"GSNPSID", 0x040, 0x4F54'281A}, ghwcfg1{"GHWCFG1", 0x044}, ghwcfg2{"GHWCFG2", 0x048, 0x229D'CD20},
       ghwcfg3{"GHWCFG3", 0x04C, 0x0200'01E8}, ghwcfg4{"GHWCFG4", 0x050, 0x0FF0'8030};

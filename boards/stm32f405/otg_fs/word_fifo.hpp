@@ -12,7 +12,7 @@ constexpr std::uint32_t words_for(std::size_t bytes) { return static_cast<std::u
 
 class WordFifo {
  public:
-  /// Largest packet memory of all OTG cores in this family.
+  /// Largest packet memory of the OTG cores in the STM32F4 family.
   static constexpr std::size_t storage_words = 1024;
 
   std::size_t count() const { return count_; }
