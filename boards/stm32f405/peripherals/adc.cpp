@@ -58,7 +58,7 @@ unsigned Adc::sampling_cycles(unsigned channel) const {
 
 void Adc::start_injected(Ticks now) {
   if (!is_on() || stopped_ || group_ == Group::injected) return;
-  // An injected group interrupts a regular group. The interrupted conversion is repeated afterwards.
+  // An injected group interrupts a regular group. The interrupted conversion is repeated after the injected group.
   resume_regular_ = group_ == Group::regular;
   group_ = Group::injected;
   sr_ |= adc.sr.jstrt.mask();
@@ -121,8 +121,8 @@ std::uint32_t Adc::convert(double voltage_V) const {
   return static_cast<std::uint32_t>(std::clamp(counts, 0.0, 4095.0)) >> (12 - resolution_bits());
 }
 
-/// Charges the sampling capacitor, starting from the voltage of the previous channel. First the pin capacitor and the
-/// sampling capacitor share their charge. Then the source recharges both capacitors. The switch has its maximum
+/// Charges the sampling capacitor, starting from the voltage of the previous channel. The pin capacitor and the
+/// sampling capacitor share their charge, and the source recharges both capacitors. The switch has its maximum
 /// resistance (data sheet, figure "Typical connection diagram using the ADC").
 double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   constexpr double switch_ohm = 6000.0, sampling_F = 4e-12;

@@ -15,7 +15,7 @@ namespace inkwell::virtual_board {
 
 class Adcs;
 
-/// VREFINT of the simulated chip, independent of the supply voltage; the data sheet allows 1.18 V to 1.24 V.
+/// VREFINT of the simulated chip. The data sheet allows 1.18 V to 1.24 V.
 inline constexpr double internal_reference_V = 1.19;
 /// Start-up time and shortest sampling time of VREFINT and the temperature sensor.
 inline constexpr Ticks internal_source_time = 10 * (ticks_per_s / 1'000'000);
@@ -33,9 +33,9 @@ class Adc final : public TimedPart {
   void write(std::uint32_t offset, std::uint32_t value);
   std::uint32_t stored(std::uint32_t offset) const;
 
-  /// Call this when firmware or DMA has read the result.
+  /// Call this function when firmware or DMA has read the result.
   void result_taken();
-  /// Injected fault: prevents new conversions.
+  /// While `stopped` is true, the converter starts no conversions.
   void stop(bool stopped);
   bool is_on() const { return adc.cr2.adon.in(cr2_); }
   /// External trigger selection, or -1 while external triggers are off.
@@ -46,7 +46,7 @@ class Adc final : public TimedPart {
   /// In an interleaved mode, starts the regular group of a slave converter at `when`.
   void start_regular_at(Ticks when);
   unsigned regular_sampling_cycles() const { return sampling_cycles(channel_of(Group::regular, regular_rank_)); }
-  /// True if the processor must stop when this group has a result.
+  /// Returns true if the processor must stop at a result of the injected group.
   bool injected_matters() const { return adc.cr1.jeocie.in(cr1_); }
   bool regular_matters() const { return adc.cr1.eocie.in(cr1_) || adc.cr2.dma.in(cr2_); }
   std::uint32_t status() const { return sr_; }
@@ -111,16 +111,16 @@ class Adcs final : public RegisterBlock, public ConverterTriggers {
   bool listens_to_timer(unsigned timer, unsigned channel) const override {
     return (awaited_[timer] >> channel & 1) != 0;
   }
-  /// Call this after a change of triggers or interrupts.
+  /// Call this function after a change of triggers or interrupts.
   void connect_triggers();
   unsigned prescaler() const { return 2 * (adc_common.ccr.adcpre.of(ccr_) + 1); }
   bool temperature_on() const { return adc_common.ccr.tsvrefe.in(ccr_); }
   /// Time at which temperature sensor and internal reference are ready.
   Ticks internal_ready_at() const { return internal_ready_at_; }
   bool battery_on() const { return adc_common.ccr.vbate.in(ccr_); }
-  /// True if results of regular groups use the common data register (CCR.DMA).
+  /// Returns true if results of regular groups use the common data register (CCR.DMA).
   bool shares_dma() const { return adc_common.ccr.dma.in(ccr_) && converts_together(); }
-  /// True if the converters alternate in their regular groups.
+  /// Returns true if the converters alternate in their regular groups.
   bool interleaved() const;
   /// Shortest time between two starts of the same converter.
   Ticks interleaving_turn() const { return group_size() * interleaving_delay(); }

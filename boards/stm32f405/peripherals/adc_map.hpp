@@ -72,7 +72,7 @@ struct AdcCommonRegisters {
 };
 inline constexpr AdcCommonRegisters adc_common;
 
-/// Lower bits of ADC_CCR.MULTI. The highest bit adds the third converter to the mode.
+/// Lower bits of ADC_CCR.MULTI. The highest bit of MULTI adds the third converter.
 enum class MultiMode : std::uint8_t {
   independent = 0,
   regular_and_injected = 1,   ///< both groups simultaneous

@@ -69,8 +69,8 @@ bool Adcs::is_slave(unsigned index, bool injected) const {
   return index != 0 && index < group_size() && (injected ? injected_simultaneous() : converts_together());
 }
 
-// DMA mode 1 transfers one result (RM0090, "Multi ADC mode"). Mode 2 transfers two results as half-words. Mode 3
-// transfers two results as bytes.
+// DMA mode 1 transfers one result (RM0090, "Multi ADC mode"). DMA mode 2 transfers two results as half-words. DMA mode
+// 3 transfers two results as bytes.
 void Adcs::share(std::uint32_t result) {
   shared_.push_back(result);
   const std::uint32_t mode = adc_common.ccr.dma.of(ccr_);

@@ -1,6 +1,6 @@
-// CAN1 and CAN2 with a transceiver but without a bus (RM0090, "Controller area network"). Mode changes work. Because no
-// node acknowledges a frame, the error counter rises until the controller is error passive. In loop-back mode the
-// controller receives its own frames through the filters.
+// CAN1 and CAN2 on a bus without other nodes (RM0090, "Controller area network"). Mode changes work. Because no node
+// acknowledges a frame, the error counter rises until the controller is error passive. In loop-back mode the controller
+// receives its own frames through the filters.
 #pragma once
 
 #include <utility>
@@ -113,7 +113,7 @@ class Can final : public RegisterBlock, public Freezable {
   void write_transmit_status(std::uint32_t value) {
     word(can.tsr) &= ~(value & bits_of(can.tsr, Access::rc_w1));
     for (unsigned i = 0; i < 3; ++i) {
-      // RQCP also clears the result flags.
+      // A write of 1 to RQCP clears the result flags.
       if (can.tsr.rqcp.in(value, i))
         word(can.tsr) &= ~(can.tsr.txok.mask(i) | can.tsr.alst.mask(i) | can.tsr.terr.mask(i));
       if (can.tsr.abrq.in(value, i)) abort_mailbox(i);

@@ -13,7 +13,7 @@
 
 namespace inkwell::virtual_board {
 
-/// A frame in the format of the mailboxes.
+/// CAN frame in the format of the mailboxes.
 struct CanFrame {
   std::uint32_t identifier;  ///< format of RIxR: STID, EXID, IDE, RTR
   std::uint32_t length;      ///< format of RDTxR: DLC, and FMI for received frames

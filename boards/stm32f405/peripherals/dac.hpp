@@ -1,5 +1,5 @@
-// The two digital-to-analog converters (RM0090, "Digital-to-analog converter"): holding and output registers, without
-// pins. Not modeled: waveforms, timer triggers and DMA.
+// Holding and output registers of the two digital-to-analog converters (RM0090, "Digital-to-analog converter"). Not
+// modeled: pins, waveforms, timer triggers and DMA.
 #pragma once
 
 #include "boards/stm32f405/memory/register_block.hpp"

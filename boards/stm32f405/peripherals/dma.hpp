@@ -19,13 +19,13 @@ class DmaController final : public RegisterBlock {
   void reset() override;
   /// Handles a request on a channel of a stream. Returns false if the stream does not accept the request.
   bool request(unsigned stream, unsigned channel);
-  /// True if the stream is enabled for the channel and an interrupt of the stream is enabled.
+  /// Returns true if the stream is enabled for the channel and an interrupt of the stream is enabled.
   bool interrupts_for(unsigned index, unsigned channel) const {
     const std::uint32_t control = streams_[index].control;
     return dma.cr.en.in(control) && dma.cr.chsel.of(control) == channel &&
            (dma.cr.tcie.in(control) || dma.cr.htie.in(control) || dma.cr.teie.in(control));
   }
-  /// Injected fault: refuses all requests.
+  /// While `stopped` is true, the controller refuses all requests.
   void stop(bool stopped) { stopped_ = stopped; }
 
  protected:

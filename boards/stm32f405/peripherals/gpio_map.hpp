@@ -40,7 +40,7 @@ struct GpioRegisters {
   } afrh{{"AFRH", 0x24}};
 };
 inline constexpr GpioRegisters<0, 0, 0> gpio;
-// The debug pins of ports A and B start in their alternate function (RM0090, GPIOx_MODER).
+// After a reset, the debug pins of ports A and B have their alternate function (RM0090, GPIOx_MODER).
 inline constexpr GpioRegisters<0xA800'0000, 0x0C00'0000, 0x6400'0000> gpio_a;
 inline constexpr GpioRegisters<0x0000'0280, 0x0000'00C0, 0x0000'0100> gpio_b;
 

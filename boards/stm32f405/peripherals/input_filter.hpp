@@ -1,6 +1,6 @@
 // Digital filter of a timer input (RM0090, TIMx_CCMR1: ICxF).
 //
-// The filter computes when a stable level passes, so no time steps are needed.
+// The model computes the time at which a stable level passes the filter.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace inkwell::virtual_board {
 
-/// The filter requires `samples` equal samples in a row, one every `divider` cycles of the timer clock.
+/// The output changes after `samples` equal samples. The filter samples once per `divider` timer cycles.
 struct InputFilterSetting {
   std::uint32_t divider = 1;
   std::uint32_t samples = 1;
@@ -32,7 +32,7 @@ class InputFilter {
   bool output() const { return output_; }
   /// Time of the next change of output() if the input does not change.
   Ticks next_change() const { return passes_at_; }
-  /// Call this when board time reaches next_change().
+  /// Call this function when board time reaches next_change().
   void pass() {
     output_ = input_;
     passes_at_ = never;

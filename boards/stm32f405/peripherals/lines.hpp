@@ -12,7 +12,7 @@ class DmaRequests {
  public:
   virtual ~DmaRequests() = default;
   virtual bool adc_request(unsigned index) = 0;
-  /// True if a stream for this converter has an interrupt enabled.
+  /// Returns true if a stream for this converter has an interrupt enabled.
   virtual bool interrupts_for_adc(unsigned index) const = 0;
   /// `source` is 0 for the update event and 1 to 4 for the channels.
   virtual bool timer_request(unsigned timer, unsigned source) = 0;
@@ -20,11 +20,11 @@ class DmaRequests {
   virtual bool spi_request(unsigned number, bool transmit) = 0;
 };
 
-/// Peripherals with requests that wait for a DMA stream.
+/// Peripherals that use DMA.
 class DmaUsers {
  public:
   virtual ~DmaUsers() = default;
-  /// Called after a stream has been enabled.
+  /// Handles waiting requests after a stream has been enabled.
   virtual void serve_dma() = 0;
 };
 
@@ -34,7 +34,7 @@ class ConverterTriggers {
   virtual ~ConverterTriggers() = default;
   /// Handles a timer event: a compare match of channel 1 to 4, or trigger_output (timers.hpp).
   virtual void timer_trigger(unsigned timer, unsigned channel) = 0;
-  /// True if the processor waits for conversions started by the timer event.
+  /// Returns true if the processor waits for conversions started by the timer event.
   virtual bool listens_to_timer(unsigned timer, unsigned channel) const = 0;
   virtual void external_line(unsigned line) = 0;
 };
@@ -43,7 +43,7 @@ class ConverterTriggers {
 class TimerEventUsers {
  public:
   virtual ~TimerEventUsers() = default;
-  /// Called when a part of the chip starts or stops using timer events.
+  /// Reports that a part of the chip starts or stops using timer events.
   virtual void timer_events_changed() = 0;
 };
 
@@ -64,7 +64,7 @@ class TimerOutputs {
   virtual void timer_output(unsigned timer, unsigned line, PinLevel level) = 0;
 };
 
-/// Pins that firmware has selected for a function. `port` is 0 for port A.
+/// Pin functions that firmware has selected. `port` is 0 for port A.
 class PinFunctions {
  public:
   virtual ~PinFunctions() = default;

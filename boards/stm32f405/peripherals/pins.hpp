@@ -67,7 +67,7 @@ class Pins final : public InputPins, public TimerOutputs, public PinFunctions {
   /// Electrical level at the pin.
   PinLevel level(unsigned port, unsigned pin) const;
   PinLevel output(unsigned port, unsigned pin) const { return states_[port * 16 + pin].output; }
-  /// Called at each level change of a pin; empty by default.
+  /// Callback at each level change of a pin.
   std::function<void(unsigned port, unsigned pin, PinLevel level)> on_level;
 
   void timer_output(unsigned timer, unsigned line, PinLevel level) override {
@@ -77,9 +77,9 @@ class Pins final : public InputPins, public TimerOutputs, public PinFunctions {
     for (unsigned i = 0; i < output.count; ++i) update(output.pins[i] >> 4, output.pins[i] & 15);
   }
 
-  /// Call this when the mode or the alternate function of `pins` has changed.
+  /// Call this function when the mode or the alternate function of `pins` has changed.
   void reconnect(unsigned port, std::uint32_t pins);
-  /// Updates the level of a pin and reports it to the circuit, timers, EXTI and on_level.
+  /// Updates the level of a pin and reports the level to the circuit, timers, EXTI and on_level.
   void update(unsigned port, unsigned pin, Ticks since = just_now);
 
  private:

@@ -27,8 +27,8 @@ class PowerControl final : public RegisterBlock {
     status_ = 0;
     update_supply();
   }
-  /// Updates the output of the programmable voltage detector, which is also EXTI line 16. The falling thresholds are
-  /// typical values (data sheet, V_PVD); the rising thresholds are 0.1 V higher.
+  /// Updates the output of the programmable voltage detector (EXTI line 16). The falling thresholds are typical values
+  /// (data sheet, V_PVD); the rising thresholds are 0.1 V higher.
   void update_supply() {
     constexpr double falling_V[] = {2.04, 2.19, 2.35, 2.51, 2.66, 2.82, 2.92, 3.03}, hysteresis_V = 0.1;
     constexpr unsigned exti_line = 16;

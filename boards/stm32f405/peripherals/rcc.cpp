@@ -60,7 +60,7 @@ void Rcc::record_reset(ResetCause cause) {
     reset_flags_ |= rcc_map.csr.borrstf.mask();
   else
     reset_flags_ |= rcc_map.csr.pinrstf.mask() << static_cast<unsigned>(cause);
-  // Every internal reset also pulls the NRST pin low, and a power-on reset also sets BORRSTF (RM0090, "System reset").
+  // Every internal reset pulls the NRST pin low. A power-on reset sets BORRSTF (RM0090, "System reset").
   reset_flags_ |= rcc_map.csr.pinrstf.mask();
   if (cause == ResetCause::power_on) reset_flags_ |= rcc_map.csr.borrstf.mask();
 }
@@ -178,7 +178,7 @@ void Rcc::step(Ticks) {
 }
 
 // An AHB peripheral clock starts two AHB cycles after the enable bit is set (ES0182). An APB peripheral clock starts
-// after 1 + prescaler AHB cycles. Only exact mode measures the time between two accesses.
+// after 1 + prescaler AHB cycles.
 void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
   if (risen == 0 || machine_.options.mode != Mode::exact) return;
   const auto& clocks = machine_.clocks.frequencies;

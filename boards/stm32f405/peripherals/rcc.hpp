@@ -1,5 +1,5 @@
-// Reset and clock control (RM0090, RCC). Oscillators have a start-up time. Every change of the clock tree changes the
-// timing of all parts that use a changed clock.
+// Reset and clock control (RM0090, RCC). Oscillators have a start-up time. A clock change affects the timing of all
+// parts that use this clock.
 #pragma once
 
 #include <array>
@@ -64,7 +64,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
   void start_oscillators();
   void switch_system_clock();
   void note_enabled(std::uint32_t offset, std::uint32_t risen);
-  /// True if the system clock comes from the crystal, directly or through the PLL.
+  /// Returns true if the system clock comes from the crystal, directly or through the PLL.
   bool runs_from_crystal() const;
   void lose_crystal();
   void check_limits(const Clocks& clocks) const;

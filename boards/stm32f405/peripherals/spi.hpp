@@ -40,7 +40,7 @@ class Spi final : public RegisterBlock {
   Spi(Machine& machine, Scheduler& events, DmaRequests& requests, unsigned number, unsigned position, bool on_apb2)
       : machine_(machine), events_(events), dma_(requests), number_(number), position_(position), on_apb2_(on_apb2) {}
   void reset() override;
-  /// Serves pending DMA requests. Call this when a DMA stream has been enabled.
+  /// Serves pending DMA requests. Call this function when a DMA stream has been enabled.
   void serve_dma();
 
  protected:

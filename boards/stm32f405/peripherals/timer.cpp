@@ -191,7 +191,7 @@ void Timer::reinitialise(bool by_software) {
 void Timer::count_one(bool down) {
   if (frozen_) return;
   down_ = down;
-  // The prescaler also divides external clocks.
+  // The prescaler divides external clocks.
   if (edges_++ < active_prescaler_) return;
   edges_ = 0;
   bool wrapped = false;

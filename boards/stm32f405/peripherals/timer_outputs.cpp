@@ -231,8 +231,8 @@ void Timer::drive_external_trigger(bool high, Ticks when) {
   plan();
 }
 
-// If ECE is set, the external trigger clocks the counter. The trigger may also reset, gate or start the counter in a
-// slave mode.
+// If ECE is set, the external trigger clocks the counter. In a slave mode, the trigger may reset, gate or start the
+// counter.
 void Timer::external_edge() {
   const bool high = external_.filter.output();
   if (high && tim.smcr.ece.in(smcr_) && enabled() && (slave_mode() != gated || gate_open_)) count_one(down_);

@@ -39,7 +39,7 @@ struct TimerTraits {
   std::array<std::uint8_t, 4> internal_triggers{};  ///< timers connected to ITR0 to ITR3
 };
 
-/// ADC trigger source for the trigger output of a timer. The values 1 to 4 are the timer channels.
+/// ADC trigger source for the trigger output of a timer. The ADC trigger sources 1 to 4 are the timer channels.
 inline constexpr unsigned trigger_output = 0;
 
 /// Lines from the timers to other peripherals.
@@ -58,7 +58,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void step(Ticks now) override;
   void before_clock_change() override;
   void after_clock_change() override;
-  /// Stops the counter. TIM1 and TIM8 also switch their outputs off (RM0090, "Debug support for timers").
+  /// Stops the counter. TIM1 and TIM8 switch their outputs off (RM0090, "Debug support for timers").
   void freeze(bool frozen) override;
 
   /// Sets the level of an input pin from `when` on.
@@ -69,9 +69,9 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void clock_failed();
   /// Handles a pulse or level change of the trigger output of timer `master`.
   void internal_trigger(unsigned master, bool level, bool is_pulse);
-  /// Handles a USB start of frame. TIM2 can select this event as ITR1.
+  /// Handles a USB start of frame. TIM2 can select the USB start of frame as ITR1.
   void usb_start_of_frame();
-  /// Call this when another part of the chip starts or stops using events of this timer.
+  /// Call this function when another part of the chip starts or stops using events of this timer.
   void plan_again();
   const TimerTraits& traits() const { return traits_; }
 
@@ -115,7 +115,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   unsigned trigger_source() const { return tim.smcr.ts.of(smcr_); }
   unsigned master_mode() const { return tim.cr2.mms.of(cr2_); }
   bool encoder_mode() const { return slave_mode() >= encoder_1 && slave_mode() <= encoder_3; }
-  /// True if input edges clock the counter.
+  /// Returns true if input edges clock the counter.
   bool counts_edges() const { return encoder_mode() || slave_mode() == external_clock || tim.smcr.ece.in(smcr_); }
   bool outputs_on() const { return !traits_.breaks || (tim.bdtr.moe.in(bdtr_) && !frozen_); }
   bool runs() const;
@@ -157,7 +157,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
     return input == external_trigger_input ? external_.filter : channels_[input].input;
   }
   void take_input_changes(Ticks until);
-  /// True if input events can affect the processor even if firmware does not read the counter.
+  /// Returns true if input events can affect the processor without a read of the counter.
   bool inputs_wake() const;
   void count_encoder_edge(unsigned changed_channel);
   void drive_external_trigger(bool high, Ticks when);
@@ -173,7 +173,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void write_events(std::uint32_t value);
   /// Register bits that LOCK currently protects.
   std::uint32_t locked_bits(std::uint32_t offset) const;
-  /// Register value after `value` is written over `old`: locked bits do not change.
+  /// Returns `value` with the locked bits of `old`.
   std::uint32_t unlocked(std::uint32_t offset, std::uint32_t old, std::uint32_t value);
   void update_interrupts();
   void raise(std::uint32_t flags);
@@ -212,7 +212,7 @@ class Timers final : public TriggerLines, public TimerInputs {
     timer(timer_number).connect_input(line, high);
   }
   void trigger_from(unsigned master, bool level, bool is_pulse);
-  /// True if the trigger output of `master` starts or steps the counter of a slave timer.
+  /// Returns true if the trigger output of `master` starts or steps the counter of a slave timer.
   bool has_slave(unsigned master) const { return slaves_[master] != 0; }
   /// Sets the master of `slave`; 0 means no master.
   void set_slave(unsigned slave, unsigned master);

@@ -1,5 +1,5 @@
 // USART1, USART2, USART3, UART4, UART5 and USART6 (RM0090, "Universal synchronous asynchronous receiver transmitter").
-// The model transfers whole characters with the real duration of an asynchronous frame. The pins have no edges.
+// The model transfers whole characters with the real duration of an asynchronous frame. The pin levels do not change.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   void receive(std::uint8_t byte);
   bool listens() const;
   std::size_t waiting() const { return line_.size(); }
-  /// Serves pending DMA requests. Call this when a DMA stream has been enabled.
+  /// Serves pending DMA requests. Call this function when a DMA stream has been enabled.
   void serve_dma();
   std::function<void(unsigned number, std::uint8_t byte)> on_sent;
 
@@ -66,7 +66,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   /// Bit duration in cycles of the bus clock.
   unsigned cycles_of_bit() const;
   Ticks frame_duration() const;
-  /// True if the baud rate is valid and a TX pin is configured.
+  /// Returns true if the baud rate is valid and a TX pin is configured.
   bool is_heard() const;
   void load_shift_register();
   void take_received();
