@@ -51,13 +51,13 @@ bool is_single_access(const Instruction& it) { return it.kind == Kind::load || i
 
 bool is_indexed_store(const Instruction& it) { return it.kind == Kind::store && it.register_offset; }
 
-/// True if `next` starts while the load instruction `it` still waits for its data.
+/// Returns true if `next` can start before the load `it` is complete.
 bool hides_load(const Instruction& it, const Instruction& next, std::uint32_t next_address) {
   if (next.kind == Kind::hint && next.bytes == 2) return true;
   if (!is_single_access(next)) return false;
   if ((next.address_registers & it.written) != 0) return false;
   if (next.kind == Kind::store) return !next.register_offset;
-  // A wide load can start early only at a word address.
+  // A wide load overlaps the previous load only at a word address.
   return next.bytes == 2 || next_address % 4 == 0;
 }
 
@@ -79,7 +79,8 @@ unsigned between(const Instruction& it, const Instruction& next, std::uint32_t n
   return cycles;
 }
 
-/// Models the instruction fetch without wait states. The core fetches one word per cycle into a buffer of three words.
+/// Models the instruction fetch from a memory without wait states. The core fetches one word per cycle into a buffer of
+/// three words.
 class Fetch {
  public:
   Fetch(std::uint32_t address, CodeMemory memory, bool after_branch)

@@ -16,7 +16,7 @@ enum class CodeMemory : std::uint8_t {
   sram,   ///< bus shared with data in SRAM
 };
 
-/// Price of a basic block, that is, its duration in cycles. A block is priced once, and each execution uses this price.
+/// Price of a basic block, that is, its duration in cycles. Each execution of a block uses the same price.
 struct BlockPrice {
   /// A flash access. `after_cycles` is the time of the access, relative to the start of the block.
   struct Request {
@@ -57,11 +57,10 @@ struct BlockPrice {
   std::vector<Read> reads;
 };
 
-/// Reads a word of memory without side effects. An empty function is allowed.
+/// Reads a word of memory without side effects. An empty WordReader is allowed.
 using WordReader = std::function<std::uint32_t(std::uint32_t address)>;
 
-/// Returns the price of the block with the instructions `code` (whole half-words) at `address`. `word` reads the
-/// literals.
+/// Returns the price of the block `code` (whole half-words) at `address`. `word` reads the literals.
 BlockPrice price(std::span<const std::uint8_t> code, std::uint32_t address, CodeMemory memory, const Costs& costs,
                  const WordReader& word = {});
 

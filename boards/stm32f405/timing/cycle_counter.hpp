@@ -25,7 +25,7 @@ class CycleCounter {
   FlashAccelerator& flash() { return flash_; }
   const FlashAccelerator& flash() const { return flash_; }
 
-  /// Price of the block of `bytes` bytes at `address`, or null if the block has no valid price.
+  /// Returns the price of the block at `address`, or null if there is no valid price for `bytes` bytes.
   const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes) {
     if (forgets_) forget_prices();
     const Known* known = *slot_of(address).known;
@@ -33,35 +33,35 @@ class CycleCounter {
         known != nullptr && known->is_current && known->price.address == address && known->price.bytes == bytes;
     return fits ? &known->price : nullptr;
   }
-  /// Price of the block `code` at `address`. The reference is valid while the block runs.
+  /// Returns the price of the block `code` at `address`. The reference is valid while the block runs.
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
-  /// Wait cycles at the start of the block at cycle `now`, for the branch refill and the FPU.
+  /// Returns the wait cycles for branch refill and FPU if the block starts at cycle `now`.
   unsigned enter(const BlockPrice& block, std::uint64_t now);
-  /// Flash wait cycles of the whole block if the block starts at cycle `now`. `register_value` returns the value of a
-  /// register at cycle `now`. Data reads with an unknown base are not counted. An unknown index is replaced by a random
-  /// index into a small table.
+  /// Returns the flash wait cycles of the block if the block starts at cycle `now`. `register_value` returns the value
+  /// of a register at cycle `now`. Data reads with an unknown base are not counted. An unknown index is replaced by a
+  /// random index into a small table.
   template <class RegisterValue>
   unsigned wait_for_flash(const BlockPrice& block, std::uint64_t now, RegisterValue&& register_value);
-  /// Wait cycles of a read at cycle `now`, with the register values at this cycle.
+  /// Returns the wait cycles of a read at cycle `now`.
   template <class RegisterValue>
   unsigned wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value);
-  /// Wait cycles of a flash access at cycle `now`.
+  /// Returns the wait cycles of a flash access at cycle `now`.
   unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
-  /// Call this when the instruction at `address` may have changed.
+  /// Call this function when the instruction at `address` may have changed.
   void reread(std::uint32_t address);
-  /// Call this after an exception entry, an exception return or a reset.
+  /// Call this function after an exception entry, an exception return or a reset.
   void redirect() { redirected_ = true; }
   /// `due` is true if the next FPU instruction must stack the FPU context of the interrupted code.
   void stack_lazily(bool due) { lazy_stacking_due_ = due; }
   bool lazy_stacking_due() const { return lazy_stacking_due_; }
-  /// Call this when instructions in the flash have changed. The price of the running block stays valid.
+  /// Call this function when instructions in the flash have changed. The price of the running block stays valid.
   void forget() {
     forgets_ = redirected_ = true;
     flash_.forget_lines();
   }
 
  private:
-  /// Hundreds of blocks run in each control period, so the members for each block run share cache lines.
+  /// The alignment reduces cache misses, because hundreds of blocks run in each control period.
   struct alignas(64) Known {
     bool is_current = false;  ///< the code has not been read again since the pricing
     BlockPrice price;
@@ -72,7 +72,7 @@ class CycleCounter {
     CodeMemory memory;
   };
   PriceSlot slot_of(std::uint32_t address) {
-    // The flash is also mapped at 0.
+    // The flash is mapped at address 0 and at flash_base.
     const std::uint32_t in_flash = address < map_.flash_bytes ? address : address - map_.flash_base;
     if (in_flash < map_.flash_bytes) return {&known_in_flash_[in_flash / 2], CodeMemory::flash};
     if (address - map_.sram_base < map_.sram_bytes)

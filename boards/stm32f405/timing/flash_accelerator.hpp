@@ -27,7 +27,7 @@ class LineCache {
 
  private:
   static constexpr std::uint32_t no_line = ~0u;
-  /// Entry of a ring that is ordered by last use. Entry 0 is a sentinel without a line. In the sentinel, `newer` is the
+  /// Entry of a ring in the order of last use. Entry 0 is a sentinel without a line. In the sentinel, `newer` is the
   /// most recently used entry, and `older` is the least recently used entry.
   struct Entry {
     std::uint32_t line = no_line;
@@ -50,21 +50,21 @@ class FlashAccelerator {
   void set(unsigned wait_states, bool prefetch, bool instruction_cache, bool data_cache);
   void forget_instructions() { instructions_.forget(); }  ///< ICRST
   void forget_data() { data_.forget(); }                  ///< DCRST
-  /// Call this after an erase or program operation, because the line buffers of the flash become invalid.
+  /// Call this function after an erase or program operation, because the line buffers of the flash become invalid.
   void forget_lines() { current_ = ahead_ = no_line; }
-  /// True if the flash has no wait states.
+  /// Returns true if the flash has no wait states.
   bool is_free() const { return wait_states_ == 0; }
   unsigned wait_states() const { return wait_states_; }
 
-  /// Wait cycles for the instruction line at `offset`, from cycle `now`.
+  /// Returns the wait cycles at cycle `now` for the instruction line at `offset`.
   unsigned fetch(std::uint32_t offset, std::uint64_t now) {
     const std::uint32_t line = offset / line_bytes;
     if (line == current_) return 0;
     return fetch_other(line, now);
   }
-  /// Wait cycles for data in the line at `offset`, from cycle `now`.
+  /// Returns the wait cycles at cycle `now` for data in the line at `offset`.
   unsigned read(std::uint32_t offset, std::uint64_t now);
-  /// Wait cycles for an uncached line, from cycle `now`.
+  /// Returns the wait cycles at cycle `now` for an uncached line.
   unsigned miss(std::uint64_t now) const {
     const bool busy = miss_waits_ && ahead_ != no_line && ahead_at_ > now;
     return static_cast<unsigned>(busy ? ahead_at_ - now : 0) + wait_states_;

@@ -19,7 +19,7 @@ void writes(Instruction& it, std::uint32_t number) {
   it.written = static_cast<std::uint16_t>(it.written | one(number));
 }
 
-/// Decodes the transfer of one register to or from memory.
+/// Decodes a load or store of one register.
 void single(Instruction& it, bool load, std::uint32_t data, std::uint32_t base) {
   it.kind = load ? Kind::load : Kind::store;
   it.reads_memory = load;

@@ -58,7 +58,7 @@ struct Instruction {
   bool uses_float() const { return kind >= Kind::float_plain; }
 };
 
-/// True if an instruction with this first half-word has a second half-word.
+/// Returns true if `first` is the first half-word of a 32-bit instruction.
 constexpr bool is_wide(std::uint16_t first) { return first >= 0xE800; }
 
 /// Decodes the instruction at `address`. For narrow instructions, `second` is ignored. Invalid instructions have the
