@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t loader_stack = sram_base + 0x2000;
 
-/// Main loop of the loader: requests an order, executes it, and repeats.
+/// The main loop of the loader requests and executes orders.
 constexpr std::uint16_t hands[] = {
     0xF240, 0x1001,  // ask: movw r0, #semihosting_poll_order
     0xBEAB,          // bkpt 0xAB

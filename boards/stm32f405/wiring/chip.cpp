@@ -206,7 +206,7 @@ std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->ma
 std::span<std::uint8_t> Chip::flash() { return {parts_->machine.memory.flash(), flash_bytes}; }
 
 std::uint64_t Chip::state_hash() const {
-  // FNV-1a hash of the memories and the core registers.
+  // FNV-1a hash of SRAM, CCM, cycle count and core registers.
   std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
   const auto add = [&](const std::uint8_t* data, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) hash = (hash ^ data[i]) * 0x100'0000'01B3;

@@ -50,9 +50,9 @@ class Chip {
   Chip(const Chip&) = delete;
   Chip& operator=(const Chip&) = delete;
 
-  /// Erases the flash sectors that the ELF's load segments overlap, and programs the segments at their physical
-  /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, truncated or too large, or if it is
-  /// not a 32-bit ARM executable.
+  /// Programs the load segments of an ELF file at their physical addresses. The sectors of the segments are erased
+  /// first. Call reset() afterwards. Throws ChipError if the file is missing, truncated or too large, or if it is not a
+  /// 32-bit ARM executable.
   void load_elf(const std::filesystem::path& path);
   /// Resets processor and peripherals like the NRST pin. Board time continues.
   void reset(ResetCause cause = ResetCause::pin);
@@ -60,8 +60,8 @@ class Chip {
   /// Runs until board time reaches `when` or the firmware exits. The function calls the circuit, the peripherals and
   /// the scheduled events.
   Stop run_until(Ticks when);
-  /// Starts the firmware like the "go" command of the boot loader (AN2606). Call reset() before this function. Clocks,
-  /// CCM and vector table have the state that the boot loader leaves, not their reset state.
+  /// Starts the firmware with the "go" command of the boot loader (AN2606). Call reset() before start_by_boot_loader().
+  /// Clocks, CCM and vector table keep the settings of the boot loader.
   void start_by_boot_loader();
   /// Starts the boot loader, like a reset with BOOT0 high.
   void start_boot_loader();
@@ -74,8 +74,8 @@ class Chip {
   /// Stops thread mode for `duration`, like an endless loop; exceptions are still handled. If the program masks
   /// exceptions, thread mode stops only after the instruction that unmasks the exceptions.
   void stall_thread(Ticks duration);
-  /// Halts the core for `duration` like a debug probe. The peripherals selected in DBGMCU_APBx_FZ also freeze. Board
-  /// time continues, unlike during a halt by debug_port().
+  /// Halts the core for `duration` like a debug probe. The peripherals selected in DBGMCU_APBx_FZ freeze. Board time
+  /// continues, in contrast to a halt by debug_port().
   void halt(Ticks duration);
   /// For `duration`, inverts the level that the circuit drives at the pin, like a voltage spike.
   void glitch(char port, unsigned pin, Ticks duration);
@@ -94,7 +94,8 @@ class Chip {
   void cut_power_at_flash_operation(std::uint64_t number);
   /// Number of erase and program operations since construction.
   std::uint64_t flash_operations() const;
-  /// Sets the 3.3 V supply of the chip and VDDA. Below the brown-out level of the option bytes the chip stays in reset.
+  /// Sets the 3.3 V supply of the chip and VDDA. The chip stays in reset while the supply is below the brown-out level
+  /// (option bytes).
   void set_supply_V(double volts);
   /// Sets VDDA alone. VDDA is the reference of the converters.
   void set_analog_supply_V(double volts);
@@ -111,21 +112,21 @@ class Chip {
   DebugPort& debug_port();
   InterruptController& interrupts();
   InputPins& input_pins();
-  /// Level at a pin, and level that the chip drives. `port` is 'A' to 'I', `pin` 0 to 15.
+  /// Level at a pin, and output level of the chip. `port` is 'A' to 'I', `pin` 0 to 15.
   PinLevel pin_level(char port, unsigned pin) const;
   PinLevel pin_output(char port, unsigned pin) const;
   ChipConnections connections();
 
   /// Adds a peripheral to the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or 0x50000000..0x50060BFF.
-  /// Each chip reset also resets the peripheral. `peripheral` must outlive the chip.
+  /// Each chip reset resets the peripheral. `peripheral` must outlive the chip.
   void add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
 
-  /// Called at the trigger of each injected ADC sequence. `index` counts the sequences since reset. Simultaneous
+  /// Callback at the trigger of each injected ADC sequence. `index` counts the sequences since reset. Simultaneous
   /// sequences of several ADCs count as one sequence.
   std::function<void(std::uint64_t index, Ticks when)> on_injected_sequence;
-  /// Called for each character from semihosting (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or from any USART.
+  /// Callback for each character from semihosting (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or from any USART.
   std::function<void(std::uint8_t byte)> on_console;
-  /// Called for each character from USART `number` (1..6), at the end of its stop bit.
+  /// Callback at the end of each character from USART `number` (1..6).
   std::function<void(unsigned number, std::uint8_t byte)> on_usart;
   /// Calls `changed` at each level change of a pin, and initially for each pin that is not floating. An empty function
   /// stops the calls.
@@ -133,16 +134,16 @@ class Chip {
   /// Calls `changed` with the exception number when a handler starts or resumes, and with 0 when thread mode resumes.
   /// An empty function stops the calls.
   void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
-  /// Called when the firmware breaks a rule, once for each combination of rule and peripheral or pin.
+  /// Callback for broken rules, once per combination of rule and peripheral or pin.
   std::function<void(const Violation& violation)> on_violation;
-  /// Called when the boot loader in the chip has executed an order. Returns the next order.
+  /// Callback after each order of the boot loader. The callback returns the next order.
   std::function<LoaderOrder()> on_boot_loader;
-  /// Called after each reset of any cause.
+  /// Callback after each reset of any cause.
   std::function<void(ResetCause cause)> on_reset;
 
   /// Sends a character to the receiver of USART `number` (1..6). Characters follow each other at the baud rate.
   void usart_receive(unsigned number, std::uint8_t byte);
-  /// True if the receiver of USART `number` is on. While the receiver is off, incoming characters are lost.
+  /// Returns true if the receiver of USART `number` is on. While the receiver is off, incoming characters are lost.
   bool usart_listens(unsigned number) const;
   /// Number of bytes from usart_receive() that the USART has not received yet.
   std::size_t usart_waiting(unsigned number) const;
@@ -156,20 +157,20 @@ class Chip {
   int exit_code() const;
   /// Description of the fault with its addresses, valid after Stop::locked_up.
   const std::string& lockup_reason() const;
-  /// Most recent fault outside of fault handlers. A lock-up results from this fault.
+  /// Most recent fault outside of fault handlers. If the processor locks up, first_fault() is the cause.
   const std::optional<Fault>& first_fault() const;
   std::vector<RegisterMap> register_maps() const;
   /// Broken rules, in the order of their first violations.
   const std::vector<Violation>& violations() const;
-  /// Log lines of all accesses to unmodeled registers.
+  /// Log lines of accesses to unmodeled registers.
   const std::vector<std::string>& unmodelled_accesses() const;
 
   /// Returns a word of flash, SRAM or CCM for debuggers, without side effects. Returns 0 for addresses outside of
   /// flash, SRAM and CCM.
   std::uint32_t memory_word(std::uint32_t address) const;
-  /// Contents of the flash, for programmers. Call reset() after a change of the contents.
+  /// Contents of the flash. Call reset() after a change of the contents.
   std::span<std::uint8_t> flash();
-  /// Hash of the memory and the core registers, for comparing runs.
+  /// Hash of SRAM, CCM, cycle count and core registers.
   std::uint64_t state_hash() const;
 
  private:

@@ -11,7 +11,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// True for peripheral registers and core registers (RM0090, memory map).
+/// Returns true for peripheral registers and core registers (RM0090, memory map).
 bool are_registers(std::uint32_t address, std::size_t bytes) {
   struct Window {
     std::uint32_t base, bytes;

@@ -94,7 +94,7 @@ Stop Execution::run_slices(Ticks when) {
   auto& timeline = machine_.timeline;
   for (;;) {
     if (state_ == State::runs) timeline.catch_up(processor_.now());
-    // Because the processor is already stopped, advancing the circuit now avoids a later stop.
+    // The circuit advances now, because the processor is already stopped.
     machine_.advance_circuit(Machine::advance_period / 2);
     reset_if_requested();
     if (stop_requested_) return Stop::requested;

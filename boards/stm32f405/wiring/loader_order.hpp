@@ -1,5 +1,5 @@
 // Orders to the boot loader in the system memory of the chip. The emulated processor executes the orders with realistic
-// timing. The program issues the orders and emulates the USB interface of the boot loader.
+// timing. The virtual board issues the orders and emulates the USB interface of the boot loader.
 #pragma once
 
 #include <cstddef>

@@ -55,8 +55,7 @@ struct ChipParts : ChipState,
     return pins.has_function(static_cast<unsigned>(port - 'A'), pin, alternate_function);
   }
 
-  // Each part is constructed after the parts that it uses. Where two parts use each other, the earlier part receives
-  // the later part through one of the lines below.
+  // Each part is constructed after the parts that it uses.
   Memory memory;
   StartingClock starting_clock;
   Machine machine;
