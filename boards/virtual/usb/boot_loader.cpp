@@ -18,7 +18,7 @@ constexpr std::uint8_t get_status = 0, set_address = 5, get_descriptor = 6, get_
 }
 constexpr std::uint8_t class_out = 0x21, class_in = 0xA1;
 
-/// Readable and writable memory areas, with one string per alternate setting (UM0424, "DfuSe memory layout").
+/// Memory areas, one string per alternate setting (UM0424, "DfuSe memory layout").
 constexpr std::string_view alternates[] = {
     "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg",
     "@Option Bytes  /0x1FFFC000/01*016 e",
@@ -116,7 +116,7 @@ Handshake BootLoader::setup(unsigned address, unsigned endpoint, std::span<const
   return Handshake::ack;
 }
 
-/// True if the request must wait. Only class requests wait until the running operation has finished.
+/// Returns true if the request must wait. Only class requests wait until the running operation has finished.
 bool BootLoader::has_to_wait() const { return (request_.type & 0x60) != 0 && dfu_.is_busy(); }
 
 Handshake BootLoader::out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) {

@@ -1,6 +1,5 @@
 // USB interface of ST's boot loader in the system memory of the chip: DFU 1.1 with ST's extensions (AN3156, AN2606).
-// Instructions on the virtual chip erase and program the flash (loader_order.hpp), with the timing of the flash
-// model.
+// The virtual chip executes the erase and program operations with realistic timing (loader_order.hpp).
 #pragma once
 
 #include <array>
@@ -24,26 +23,25 @@ struct SetupPacket {
   std::uint16_t value, index, length;
 };
 
-/// Execution of DFU requests, independent of the bus.
+/// Executes DFU requests.
 class BootLoaderDfu {
  public:
   static constexpr std::uint16_t transfer_bytes = 2048;
 
   /// Restores the start-up state.
   void start();
-  /// Returns the next order for the virtual chip. next_order() itself reads memory and registers, and board time does
-  /// not pass.
+  /// Returns the next order for the virtual chip. Board time does not pass during next_order().
   LoaderOrder next_order(DebugPort& memory);
-  /// True while the chip executes an order. During this time no request can be answered.
+  /// Returns true while the chip executes an order. No request can be answered during an order.
   bool is_busy() const { return asked_.has_value() || is_working_; }
-  /// True if the next order starts the program.
+  /// Returns true if the next order starts the program.
   bool is_about_to_leave() const { return asked_ && asked_->kind == Operation::Kind::leave; }
-  /// Handles a request without data or with complete data. Returns false for a stall.
+  /// Handles a request with its complete data. Returns false if the endpoint must stall.
   bool take(const SetupPacket& request, std::span<const std::byte> data);
-  /// Answers a request for data; std::nullopt is a stall. If the answer requires a memory read, is_busy() is true; call
-  /// answer() again when is_busy() is false.
+  /// Answers a request for data. Returns std::nullopt if the endpoint must stall. If is_busy() is true after the call,
+  /// call answer() again when is_busy() is false.
   std::optional<std::vector<std::byte>> answer(const SetupPacket& request);
-  /// True if the loader has started the program or reset the chip.
+  /// Returns true if the loader has started the program or reset the chip.
   bool has_left() const { return has_left_; }
 
  private:
@@ -98,7 +96,7 @@ class BootLoader final : public BusDevice {
  public:
   /// Returns the next order of the loader. The first call of next_order() connects the loader to the bus.
   LoaderOrder next_order(DebugPort& memory);
-  /// Call this at each reset of the chip.
+  /// Call this function at each reset of the chip.
   void stop() { is_running_ = false; }
   bool is_running() const { return is_running_; }
 

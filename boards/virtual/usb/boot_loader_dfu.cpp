@@ -135,7 +135,8 @@ std::optional<std::vector<std::byte>> BootLoaderDfu::answer(const SetupPacket& r
   return std::vector<std::byte>{};
 }
 
-/// Answers the status request and starts the waiting operation. The next status answer follows after the operation.
+/// Answers the status request and starts the waiting operation. The next status request is answered after the
+/// operation.
 std::vector<std::byte> BootLoaderDfu::status() {
   State reported = state_;
   unsigned poll_ms = 0;

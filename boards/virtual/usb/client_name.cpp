@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the link target of the socket with this local port, as shown in /proc. The result is empty if the socket
-/// does not exist.
+/// Returns the /proc link target of the socket with the local port `port`. The result is empty if the socket does not
+/// exist.
 std::string link_of_socket(std::uint16_t port) {
   std::ostringstream address;
   address << "0100007F:" << std::uppercase << std::hex << std::setw(4) << std::setfill('0') << port;

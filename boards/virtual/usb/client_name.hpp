@@ -1,4 +1,4 @@
-// Name of the program at the remote end of a local connection, for log lines and errors.
+// Names of connected programs, for log lines and errors.
 #pragma once
 
 #include <sys/types.h>
@@ -16,7 +16,7 @@ struct Peer {
 Peer peer_of(int socket);
 
 /// Returns, for example, "drop-in-well (process 4711)". For a TCP connection, searches for the process that uses the
-/// port on 127.0.0.1. If this search fails, returns the port.
+/// port on 127.0.0.1. If the search fails, returns the port.
 std::string client_name(Peer peer);
 
 }  // namespace inkwell::virtual_board

@@ -44,8 +44,8 @@ struct DeviceDescription {
   std::uint8_t configuration_count() const { return byte(17); }
 };
 
-/// Parses a configuration descriptor and the descriptors after it. Parsing stops at the first damaged descriptor. The
-/// result contains all earlier descriptors.
+/// Parses a configuration descriptor and the following descriptors. The result contains all descriptors before the
+/// first damaged descriptor.
 ConfigurationDescription parse_configuration(std::span<const std::byte> bytes);
 
 }  // namespace inkwell::virtual_board

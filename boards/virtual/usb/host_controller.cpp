@@ -10,12 +10,11 @@ namespace {
 constexpr double nominal_frame_s = 0.001;
 constexpr Ticks byte_ticks = 8 * bit_ticks;
 // Overhead of a transaction in bytes (USB 2.0, tables 5-8 to 5-10): token, handshake, synchronization and turn-around.
-// With this overhead, 19 bulk packets of 64 bytes fit in a frame. Stuffed bits are added separately.
+// With an overhead of 13 bytes, 19 bulk packets of 64 bytes fit in a frame. Stuffed bits are added separately.
 constexpr Ticks transaction_bytes = 13;
 constexpr Ticks refused_in_bytes = 8;
 constexpr Ticks start_of_frame_bytes = 6;
-// An endpoint that is not ready is polled again at increasing intervals, because polling an idle endpoint 180 times per
-// frame has no benefit. Real controllers use different intervals.
+// The controller polls an endpoint that is not ready at increasing intervals. Real controllers use different intervals.
 constexpr Ticks retry_first = refused_in_bytes * byte_ticks;
 constexpr Ticks retry_maximum = ticks(nominal_frame_s / 4);
 constexpr unsigned frames_until_suspend = 3;
@@ -98,8 +97,8 @@ void HostController::submit(Urb&& urb) {
     client_.completed(std::move(urb), transfer_status::invalid);
     return;
   }
-  // The host controller fixes the schedule of a frame at the start of the frame. The first report of an idle OUT
-  // endpoint is therefore sent at the earliest in the frame after its submission.
+  // The host controller fixes the schedule of a frame at the start of the frame. An interrupt OUT transfer to an idle
+  // endpoint starts at the earliest in the next frame.
   if (pipe.type == TransferType::interrupt && !urb.in && pipe.urbs.empty())
     pipe.due_frame = std::max(pipe.due_frame, frame_ + 1);
   pipe.urbs.push_back(std::move(urb));

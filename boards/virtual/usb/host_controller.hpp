@@ -1,9 +1,8 @@
 // A full-speed host controller with one device on its bus: frames, transactions, transfers.
 //
-// A frame lasts 1 ms of the host's clock. As in USB 2.0, section 5, a frame contains the start of frame, then
-// transactions of due interrupt endpoints, of control endpoints, and of bulk endpoints in rotation. Transactions are
-// sequential and last as long as on a 12 Mbit/s bus, including stuffed bits. A transaction that does not fit in the
-// frame waits for the next frame.
+// A frame lasts 1 ms of the host's clock. A frame contains, in this order, the start of frame, due interrupt endpoints,
+// control endpoints, and bulk endpoints in rotation (USB 2.0, section 5). Transactions are sequential and last as long
+// as on a 12 Mbit/s bus, including stuffed bits. A transaction that does not fit in the frame waits for the next frame.
 #pragma once
 
 #include <array>
@@ -23,13 +22,13 @@ namespace inkwell::virtual_board {
 
 class HostController {
  public:
-  /// Callbacks to the client that uses the controller. The callbacks run on the simulation thread.
+  /// Callbacks to the client. The callbacks run on the simulation thread.
   class Client {
    public:
     virtual ~Client() = default;
-    /// Called between two transactions, after each completed transfer. The callback may submit and unlink transfers.
+    /// Callback between two transactions. The callback may submit and unlink transfers.
     virtual void between_transactions() = 0;
-    /// Called every millisecond of the host's clock, before the start of frame.
+    /// Callback before each start of frame.
     virtual void frame() = 0;
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
   };
@@ -42,7 +41,7 @@ class HostController {
 
   /// Starts or stops the frames. The device suspends after 3 ms without frames.
   void run_frames(bool run);
-  /// If `polls` is false, simulates a hung host, which sends frames but starts no transactions.
+  /// If `polls` is false, the host sends frames but starts no transactions.
   void set_polling(bool polls) { is_polling_ = polls; }
   /// Sets the device address in tokens and the packet size of endpoint 0.
   void address_device(unsigned address, std::uint16_t control_packet_maximum);

@@ -1,29 +1,30 @@
 // Rules for synchronizing board time with the host. The host is the program that uses the USB device.
 //
 // A real board streams to a host controller, which polls in time even if the computer is busy. The host of a virtual
-// board is a program on the same computer. A program may have to wait for CPU time. If board time passed during this
-// wait, data would be lost. Board time therefore waits for the host.
+// board is a program on the same computer. A program may have to wait for CPU time. If board time passed while the
+// program waits, data would be lost. Board time therefore waits for the host.
 //
-//   An IN endpoint is tracked (is_kept) from its second request on. The host is then expected to submit a new request
-//   after each answer.
+//   An IN endpoint is tracked (is_kept) from its second request on. The host must submit a new request after each
+//   answer from a tracked endpoint.
 //
 //   When a tracked endpoint has no request left, board time stops in the middle of the frame until the next request.
 //
-//   Each answered request must be renewed before a control socket command is executed or a `run` is answered. The host
-//   has then processed all past events, so the next action of the host is reproducible.
+//   Each answered request must be renewed before a control socket command is executed or a `run` is answered. A host
+//   that has renewed its requests has processed all past events, so the next action of the host is reproducible.
 //
 //   A host with several simultaneous requests is a streaming host. Board time waits without limit until a streaming
 //   host submits a request, unlinks a request or disconnects. A program that a debugger has stopped therefore loses no
-//   data. After `patience`, control socket commands are executed during this wait.
+//   data. If the wait exceeds `patience`, control socket commands are executed during the wait.
 //
 //   A host with single requests may have read all data that it needs. A host that waits for a control transfer may
-//   pause its other requests. Board time waits for both kinds of host at most `patience` of wall-clock time.
+//   pause its other requests. For a host with single requests or with a pending control transfer, board time waits at
+//   most `patience` of wall-clock time.
 //
 //   If the board runs in real time, or if several programs use the device, every wait is limited to `patience`. Without
-//   this limit, a hung program would delay the other programs, and the board could not switch the force off.
+//   the limit, a hung program would delay the other programs, and the board could not switch the force off.
 //
 //   Board time does not wait at an untracked endpoint, after an unlinked or failed request, or after an expired limit.
-//   Tracking of the endpoint then restarts as after an import.
+//   After an unlinked or failed request, or after an expired limit, tracking of the endpoint restarts.
 //
 //   Board time never waits for control or OUT transfers, because the firmware must detect a silent host.
 #pragma once
@@ -43,26 +44,27 @@ class HostPace {
   void submitted(const Urb& urb);
   void completed(const Urb& urb, std::int32_t status);
   void unlinked(const Urb& urb);
-  /// Call this when the host has unlinked a transfer that had already been answered.
+  /// Call this function when the host has unlinked a transfer that had already been answered.
   void unlinked_too_late(std::uint32_t sequence);
-  /// Call this when the device is detached. Tracking restarts for all endpoints.
+  /// Call this function when the device is detached. Tracking restarts for all endpoints.
   void restart();
 
-  /// True if a tracked endpoint has no pending request.
+  /// Returns true if a tracked endpoint has no pending request.
   bool is_starved() const;
-  /// True if a tracked endpoint has fewer pending requests than its previous maximum.
+  /// Returns true if a tracked endpoint has fewer pending requests than its previous maximum.
   bool is_owed() const;
-  /// True if the wait for the host has no time limit. This requires that no control transfer is pending and that the
-  /// host streams at every endpoint with a missing request.
+  /// Returns true if no control transfer is pending and the host streams at every endpoint with a missing request.
   bool is_waited_for_without_limit() const;
-  /// Call this when the time limit of a wait has expired. Endpoints with a missing request are no longer tracked.
+  /// Call this function when the time limit of a wait has expired. Endpoints with a missing request are no longer
+  /// tracked.
   void lose_patience();
-  /// True while the host waits for the answer to a control transfer.
+  /// Returns true while the host waits for the answer to a control transfer.
   bool has_control_transfer() const { return control_transfers_ > 0; }
 
   // ---- lock step (docs/virtual-board.md) ----
 
-  /// True if the host waits for a requested report, or for a control transfer if the host has never requested a report.
+  /// Returns true if the host waits for a requested report, or for a control transfer if the host has never requested a
+  /// report.
   bool waits_for_board() const;
   /// Variants of is_starved() and is_owed() for endpoints at which the host streams.
   bool is_stream_starved() const;

@@ -77,7 +77,7 @@ std::optional<Urb> RootPort::unlink(std::uint32_t sequence) {
 }
 
 void RootPort::between_transactions() {
-  // A hub detects within microseconds that the pull-up is off, even if the pull-up is on again before the next frame.
+  // A hub detects an interruption of the pull-up that is shorter than a frame.
   const std::uint32_t attachment = plugged_ ? device_.attachment() : 0;
   if (attachment != attachment_) {
     detach();

@@ -28,7 +28,7 @@ class PortObserver {
 
 class RootPort final : private HostController::Client {
  public:
-  /// Callbacks to the client that uses the device.
+  /// Callbacks to the client.
   class Client : public PortObserver {
    public:
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
@@ -43,9 +43,10 @@ class RootPort final : private HostController::Client {
   bool enumerated() const { return state_ >= State::suspended; }
   bool imported() const { return state_ > State::suspended; }
 
-  /// Resets and addresses the device for a new user. Allowed only if enumerated() is true and imported() is false.
+  /// Resets and addresses the device for a new user. The call is allowed only if enumerated() is true and imported() is
+  /// false.
   void import();
-  /// Call this when the user has disconnected. The user's transfers are discarded, and the bus suspends.
+  /// Call this function when the user has disconnected. The user's transfers are discarded, and the bus suspends.
   void release();
   void submit(Urb&& urb);
   /// Removes and returns a transfer, or returns std::nullopt if the transfer does not exist or has completed.

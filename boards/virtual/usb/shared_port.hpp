@@ -1,12 +1,12 @@
-// Shares one device between several simultaneous programs, like an operating system.
+// Shares one device between several programs, as an operating system does.
 //
 // USB/IP allows only one importer per device. SharedPort lets several programs import the same device. The following
 // rules apply.
 //
 //   Every program that has requested an interrupt IN report receives the report.
 //
-//   The first program with a bulk request uses the bulk endpoints until it disconnects or unlinks its requests. The
-//   other programs receive the status "busy", as from a claimed interface.
+//   The first program with a bulk request uses the bulk endpoints until it disconnects or unlinks its requests. Bulk
+//   requests of other programs fail with the status "busy".
 //
 //   Control and OUT transfers are executed one after the other. SharedPort itself answers a second SET_CONFIGURATION,
 //   because this request would reset the endpoints of the other programs.
@@ -41,8 +41,8 @@ class SharedPort final : private RootPort::Client {
   bool imported() const { return port_.imported(); }
 
   void import(std::uint32_t session);
-  /// Call this when a program has disconnected. The program's transfers are discarded. After the last program has
-  /// disconnected, the bus suspends.
+  /// Call this function when a program has disconnected. The program's transfers are discarded. After the last program
+  /// has disconnected, the bus suspends.
   void release(std::uint32_t session);
   void submit(std::uint32_t session, Urb&& urb);
   /// Removes and returns a transfer, or returns std::nullopt if the transfer does not exist or has completed.

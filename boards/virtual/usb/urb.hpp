@@ -26,8 +26,7 @@ struct Urb {
   std::uint32_t flags = 0;
   std::uint32_t length = 0;  ///< bytes to send, or space for received bytes
   std::array<std::byte, 8> setup{};
-  /// Offset and length of a packet of an isochronous transfer. The host controller does not execute isochronous
-  /// transfers.
+  /// Offset and length of an isochronous packet. The host controller does not execute isochronous transfers.
   struct Packet {
     std::uint32_t offset, length;
   };

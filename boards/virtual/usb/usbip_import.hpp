@@ -1,4 +1,4 @@
-// Import of the device by one client, with the client's unanswered transfers.
+// Import of the device by one client.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class UsbIpImport {
  public:
   explicit UsbIpImport(std::uint32_t session) : session_(session) {}
 
-  /// Number of the import. Late answers that belong to an earlier import have a different number and are discarded.
+  /// Number of the import. Late answers of an earlier import have a different number and are discarded.
   std::uint32_t session() const { return session_; }
 
   /// Throws std::runtime_error if the sequence number is in use or the server's limit is exceeded.

@@ -17,7 +17,7 @@ void check_transfer(const usbip::TransferHeader& header) {
   if (header.endpoint > 15) throw std::runtime_error("an endpoint number is above 15");
 }
 
-/// Returns the number of packet descriptors, which follow the data of an isochronous transfer.
+/// Returns the number of packet descriptors after the data of an isochronous transfer.
 std::size_t packet_count_of(const usbip::Submit& submit) {
   if (submit.packet_count == usbip::not_isochronous) return 0;
   if (submit.packet_count > packets_maximum)

@@ -22,9 +22,9 @@ inline constexpr std::uint32_t transfer_maximum = 16u << 20;
 /// Largest number of packets in an isochronous transfer, equal to the limit of Linux.
 inline constexpr std::uint32_t packets_maximum = 1024;
 
-/// Parses the requests of one client. A request is returned when all its bytes have been received. For an invalid
-/// request, the functions throw std::runtime_error. The error text completes the sentence "... because". After an
-/// invalid request, no further bytes of the client can be parsed.
+/// Parses the requests of one client. A request is returned when all its bytes have been received. The functions throw
+/// std::runtime_error if a request is invalid. The error text completes the sentence "... because". After an invalid
+/// request, no further bytes of the client can be parsed.
 class UsbIpRequests {
  public:
   struct ListDevices {};

@@ -27,8 +27,7 @@ constexpr std::size_t connections_maximum = 16;
 /// Largest number of simultaneous importers of the device (SharedPort).
 constexpr std::size_t importers_maximum = 8;
 constexpr std::size_t receive_bytes = 256 * 1024;
-/// Largest number of unsent bytes per client. A client above this limit is disconnected, because such a client does not
-/// read its data.
+/// Largest number of unsent bytes per client. A client above this limit is disconnected.
 constexpr std::size_t unsent_maximum = 64u << 20;
 
 }  // namespace
@@ -99,7 +98,7 @@ void UsbIpServer::withdraw() {
 
 void UsbIpServer::wake() {
   const std::uint64_t one = 1;
-  // A failed write is ignored, because a full counter also wakes the thread.
+  // A failed write is ignored, because a full counter wakes the thread.
   [[maybe_unused]] const auto written = ::write(wake_.number(), &one, sizeof one);
 }
 
@@ -184,7 +183,7 @@ void UsbIpServer::make_room() {
   connections_.erase(oldest);
 }
 
-// Queues the release order immediately, so that it precedes the next import order.
+// Queues the release order immediately, so that the release precedes the next import.
 void UsbIpServer::end(Connection& connection) {
   connection.dead = true;
   if (!connection.import) return;

@@ -48,7 +48,7 @@ class UsbIpServer {
   };
 
   /// Throws std::runtime_error if the server cannot listen. The error sentence names --usbip. The server thread calls
-  /// `on_order` when orders are available to take().
+  /// `on_order` when orders are ready for take().
   UsbIpServer(const local::SocketAddress& where, std::function<void()> on_order);
   ~UsbIpServer();
   UsbIpServer(const UsbIpServer&) = delete;
@@ -59,13 +59,13 @@ class UsbIpServer {
   // For the simulation thread.
   /// Appends the received orders to `orders`. The call is fast if no orders have been received.
   void take(std::vector<Order>& orders);
-  /// Waits until all earlier answers are sent and all earlier data is converted to orders.
+  /// Waits until all queued answers are sent and all received data is converted to orders.
   void exchange_all();
-  /// Waits for orders. Returns false if no order has been received at `deadline`.
+  /// Waits for orders. Returns false if no order has been received before `deadline`.
   bool wait_for_order(std::chrono::steady_clock::time_point deadline);
   void answer(Result&& result);
   void offer(const DeviceDescription& device);
-  /// Call this when the device is removed. All importers are disconnected.
+  /// Call this function when the device is removed. All importers are disconnected.
   void withdraw();
 
  private:

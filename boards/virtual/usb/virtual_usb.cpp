@@ -45,7 +45,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   bool any(Condition condition) const {
     return std::ranges::any_of(paces, [&](const auto& entry) { return (entry.second.*condition)(); });
   }
-  /// True if the wait for this condition has a time limit.
+  /// Returns true if the wait for this condition has a time limit.
   bool is_limited(Condition condition) const {
     if (is_in_lock_step()) return false;
     if (has_limit || paces.size() > 1) return any(condition);

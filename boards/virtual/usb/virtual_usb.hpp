@@ -18,13 +18,13 @@ class VirtualUsb {
  public:
   /// Listens at `where` (local::Listener). Initially the cable is plugged in. Throws std::runtime_error with an error
   /// sentence if the server cannot listen. The objects in `chip` must outlive this object. The server thread calls
-  /// `on_request` when requests are pending for serve(). Board time does not wait for hosts if `is_ending` returns
-  /// true. `host_clock_ppm`: see HostController.
+  /// `on_request` when requests are ready for serve(). Board time does not wait for hosts if `is_ending` returns true.
+  /// `host_clock_ppm`: see HostController.
   VirtualUsb(const ChipConnections& chip, const local::SocketAddress& where, double host_clock_ppm,
              std::function<void()> on_request, std::function<bool()> is_ending);
   ~VirtualUsb();
 
-  /// Returns the peripheral to map at OtgFsDevice::base, including the USB device of the boot loader.
+  /// Returns the peripheral for the address OtgFsDevice::base.
   Connector& connector();
 
   const local::SocketAddress& address() const;
@@ -36,16 +36,16 @@ class VirtualUsb {
   /// host has received all answers and has renewed its requests (see host_pace.hpp).
   void settle();
 
-  /// Limits all further waits for programs to HostPace::patience, even if only one program uses the device.
+  /// Limits all further waits for programs to HostPace::patience.
   void limit_waiting();
   /// Sets a callback for waits that last longer than HostPace::patience. The callback is called about 20 times per
   /// second, in the middle of a frame. If the callback returns false, board time continues.
   void on_late_host(std::function<bool()> goes_on);
-  /// Names of the programs for which board time has waited longer than HostPace::patience. In lock step, the result
-  /// contains all programs for which board time waits.
+  /// Returns the names of the programs for which board time has waited longer than HostPace::patience. In lock step,
+  /// the result contains all programs for which board time waits.
   std::vector<std::string> late_hosts() const;
 
-  /// True while a host waits for the answer to a control transfer.
+  /// Returns true while a host waits for the answer to a control transfer.
   bool has_control_transfer() const;
 
   /// Enables lock step. `on_stop` is called immediately when lets_time_pass() becomes false.
@@ -58,10 +58,10 @@ class VirtualUsb {
   void connect();
   void disconnect();
   bool connected() const;
-  /// If `polls` is false, simulates a hung host, which sends frames but starts no transactions.
+  /// If `polls` is false, the host sends frames but starts no transactions.
   void set_host_polling(bool polls);
 
-  /// True if the host has read the descriptors of the device, so that programs can import the device.
+  /// Returns true if the host has read the descriptors of the device, so that programs can import the device.
   bool enumerated() const;
   bool imported() const;
 
