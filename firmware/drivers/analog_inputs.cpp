@@ -101,12 +101,12 @@ void set_up_slow_sequence() {
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
-/// These flags must be clear before a transfer (RM0090, DMA stream configuration procedure).
+/// The flags of the stream must be clear before a transfer (RM0090, DMA stream configuration procedure).
 constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFCR::CDMEIF0::mask |
                                           DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
                                           DMA2::LIFCR::CTCIF0::mask;
 
-/// Sets up the DMA stream to start at the first transfer. The stream must be disabled.
+/// Sets up and enables the DMA stream. Before the call, the stream must be disabled.
 INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destination) {
   constexpr std::uint32_t channel_adc1 = 0, half_word = 0b01, from_peripheral = 0b00;
   DMA2::LIFCR::write(flags_of_stream);

@@ -1,11 +1,12 @@
-// Driver of all analog inputs. ADC1 converts motor currents and slow inputs, so there is one driver for all inputs.
+// Driver of all analog inputs. One driver handles all inputs, because ADC1 converts both motor currents and slow
+// inputs.
 //
 // The update of TIM1 starts the injected conversions of the motor currents in ADC1, ADC2 and ADC3. ADC1 raises an
-// interrupt at the end of these conversions. The regular sequence of ADC1 converts gimbal, supply and internal
+// interrupt at the end of the injected conversions. The regular sequence of ADC1 converts gimbal, supply and internal
 // reference in every control period. DMA2 stream 0 stores the results of the sequence.
 //
-// The ADCs sample at most 0.2 us after the update. In this time a motor current of 1 A changes by at most one ADC step
-// of 2 mA. The sampling instant needs no correction.
+// The ADCs sample at most 0.2 us after the update. In 0.2 us a motor current of 1 A changes by at most one ADC step of
+// 2 mA. The sampling instant needs no correction.
 #pragma once
 
 #include <array>
@@ -60,7 +61,7 @@ class AnalogInputs {
   std::uint16_t supply_counts() const { return slow_[4]; }
   /// Converter counts of the internal reference, or 0 before the first measurement.
   std::uint16_t reference_counts() const { return slow_[3]; }
-  /// The manufacturer's reading of the internal reference at a VDDA of 3.3 V, or 65535 if this reading was erased.
+  /// Factory reading of the internal reference at VDDA = 3.3 V, or 65535 if this reading was erased.
   static std::uint16_t calibrated_reference_counts();
   /// Number of control periods without a new measurement of gimbal and supply. The value is 0 or 1 in normal operation.
   std::uint32_t slow_age_periods() const { return slow_age_periods_; }

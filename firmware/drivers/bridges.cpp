@@ -37,8 +37,8 @@ void set_up() {
   Timer::CCMR2::write(typename Timer::CCMR2::OC3M(high_below_compare), typename Timer::CCMR2::OC3PE(1));
   Timer::BDTR::write(outputs_off);
   Timer::CCER::write(typename Timer::CCER::CC1E(1), typename Timer::CCER::CC2E(1), typename Timer::CCER::CC3E(1));
-  // This update event loads the repetition counter. The repetition value is odd and the counter starts upward from 0.
-  // Therefore the update occurs at every sixth counter reversal, when the counter is 0 (RM0090, "Repetition counter").
+  // UG loads the repetition counter. The repetition value is odd and the counter starts upward from 0. The update
+  // occurs at every sixth counter reversal, when the counter is 0 (RM0090, "Repetition counter").
   Timer::EGR::write(typename Timer::EGR::UG(1));
 }
 
@@ -60,7 +60,7 @@ bool any_is_high() {
 
 /// Starts both counters together. TIM8 waits for internal trigger 0, the trigger output of TIM1 (RM0090, "TIMx internal
 /// trigger connection"). The trigger arrives about two cycles late, so leg B of a bridge switches 12 ns later than leg
-/// A. The dead times of the bridges are several times longer.
+/// A. The dead times of the bridges are several times longer than 12 ns.
 void start_together() {
   constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000;
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));
@@ -76,7 +76,7 @@ void start_together() {
 /// Writing 0 clears a flag, and writing 1 does not change the flag.
 void clear_update() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 
-/// Settling time of 4 us. An internal pull resistor charges 100 pF in this time.
+/// Settling time of 4 us. In 4 us an internal pull resistor charges 100 pF.
 constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
 void connect_pins() {

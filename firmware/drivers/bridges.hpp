@@ -1,7 +1,7 @@
 // The three motor bridges. TIM1 drives the legs A, and TIM8 drives the legs B. The center-aligned timers run
 // synchronously.
 //
-// Each leg is high while the counter is below its compare value. The diagram shows the counter of both timers in one
+// A leg is high while the counter is below the leg's compare value. The diagram shows the counter of both timers in one
 // control period (three PWM periods).
 //
 //   Top  |   /\    /\    /\    |
@@ -54,12 +54,12 @@ class Bridges {
   /// Returns true if the fault wire is low, or was low after the bridges had been enabled.
   bool fault() const;
 
-  /// Returns true if the internal pull resistors can change the level of the fault wire. In this case the pin is
-  /// disconnected. Call this function while the bridges are off. The function disables interrupts for 8 us, because an
-  /// interrupt could interpret the low level as a fault.
+  /// Returns true if the fault wire is disconnected, so that the internal pull resistors can change its level. Call
+  /// this function while the bridges are off. The function disables interrupts for 8 us, because an interrupt could
+  /// interpret the low level as a fault.
   bool fault_wire_of_tim1_floats() const;
   bool fault_wire_of_tim8_floats() const;
-  /// Levels at the chip's pins. External circuits may drive these pins.
+  /// Levels at the chip's pins.
   bool enable_is_high() const;
   bool heartbeat_is_high() const;
   bool hold_is_high() const;
@@ -67,11 +67,11 @@ class Bridges {
   /// Returns true if the control interrupt has switched the bridges on.
   bool are_on() const { return enabled_; }
 
-  /// Returns true if an update occurred after the last begin_period(). If the result is true at the end of the control
-  /// interrupt, the interrupt has taken longer than one period.
+  /// Returns true if a timer update occurred after the last begin_period(). If the result is true at the end of the
+  /// control interrupt, the interrupt has taken longer than one period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
   /// Raises the heartbeat if the bridges are on. Each heartbeat permits the bridges to stay on for `bridge_hold_s`.
-  /// Returns true if the monostable has switched the bridges off. The cause is a late heartbeat or a broken heartbeat
+  /// Returns true if the monostable has switched the bridges off, because of a late heartbeat or a broken heartbeat
   /// wire.
   [[nodiscard]] bool begin_period();
   /// Lowers the heartbeat until the next period.

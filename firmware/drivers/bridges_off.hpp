@@ -1,4 +1,4 @@
-// Three stores switch the motors off. These stores need neither the stack nor other memory.
+// Three stores switch the motors off without access to RAM.
 #pragma once
 
 #include <board/board.hpp>

@@ -10,7 +10,7 @@
 //     the source to firmware/drivers/CMakeLists.txt.
 // (2) Access registers with RegistersOf<Driver, registers::TIM3>.
 // (3) Add the driver to Parts in firmware/application/parts.hpp.
-// (4) For a new peripheral, follow registers/peripherals.hpp.
+// (4) For a new peripheral, follow the steps in registers/peripherals.hpp.
 
 #include <array>
 #include <cstdint>

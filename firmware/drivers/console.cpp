@@ -11,8 +11,8 @@ namespace {
 using USART2 = RegistersOf<Console, registers::USART2>;
 
 constexpr std::uint32_t baud_Hz = 115'200;
-/// Time limit for a character: the duration of two characters. The limit prevents a failed serial port from blocking
-/// the board.
+/// Time limit per character, equal to the duration of two characters. The limit prevents a failed serial port from
+/// blocking the board.
 constexpr std::uint32_t character_cycles = 2 * 10 * (board::processor_Hz / baud_Hz);
 
 void write_character(char character) {

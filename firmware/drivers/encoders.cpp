@@ -33,7 +33,7 @@ void connect_encoder() {
   connect<Encoders, wiring.b>(Pull::up, Speed::low);
 }
 
-/// Settling time of 10 us. An internal pull resistor charges 250 pF in this time.
+/// Settling time of 10 us. In 10 us an internal pull resistor charges 250 pF.
 constexpr std::uint32_t pull_cycles = board::processor_Hz / 100'000;
 
 }  // namespace

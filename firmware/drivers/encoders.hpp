@@ -23,8 +23,8 @@ class Encoders {
   /// Timer counts modulo 65536. TIM5 has 32 bits, but read() returns 16 bits for all timers.
   std::array<std::uint16_t, 3> read() const;
 
-  /// Returns true if an internal pull resistor can change the level of wire A or B of `encoder`, 0..2. In this case no
-  /// encoder drives the wire. The check takes 20 us.
+  /// Returns true if no encoder drives wire A or B of `encoder` (0..2), so that a pull resistor can change the level.
+  /// The check takes 20 us.
   bool wire_a_floats(std::size_t encoder) const;
   bool wire_b_floats(std::size_t encoder) const;
 };

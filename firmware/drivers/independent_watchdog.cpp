@@ -19,7 +19,7 @@ constexpr std::uint32_t reload =
 bool IndependentWatchdog::start() {
   using Freeze = registers::DBG::DBGMCU_APB1_FZ;
   Freeze::modify(Freeze::DBG_IWDG_STOP(1));
-  // The start of the watchdog also starts the watchdog oscillator. Without the oscillator, new register values would
+  // The start key starts the watchdog and the watchdog oscillator. Without the oscillator, new register values would
   // never take effect.
   IWDG::KR::write(key_start);
   IWDG::KR::write(key_unlock);

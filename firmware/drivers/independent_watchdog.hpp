@@ -19,7 +19,7 @@ class IndependentWatchdog {
 
   /// Starts the watchdog. A running watchdog cannot be stopped. The nominal timeout is 20 ms. With the tolerance of the
   /// watchdog oscillator, the timeout is 14 to 38 ms. The watchdog pauses while a debugger halts the processor. Returns
-  /// false if the watchdog did not accept the timeout. In this case the watchdog oscillator does not run.
+  /// false if the watchdog did not accept the timeout, because the watchdog oscillator does not run.
   bool start();
 
   void feed();

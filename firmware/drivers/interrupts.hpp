@@ -16,12 +16,12 @@ class InterruptsHeld {
   InterruptsHeld& operator=(const InterruptsHeld&) = delete;
 };
 
-/// Every handler calls this function last. Without this call, a handler may return while a store is in progress. The
-/// processor may clear a newly arrived interrupt and run another interrupt instead (erratum 838869 of the Cortex-M4).
+/// Every interrupt handler calls finish_stores() last. If a handler returns during a store, the processor may run the
+/// wrong interrupt (erratum 838869 of the Cortex-M4).
 inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
 /// The PendSV handler runs after all interrupts and before the program continues (ARMv7-M, B1.5.6). Every interrupt can
-/// preempt this handler.
+/// preempt the PendSV handler.
 struct CallAfterInterrupts {
   static void start() {
     constexpr std::uint32_t after_all_interrupts = 0xF0;

@@ -1,4 +1,4 @@
-// Stores data for the next run, in memory that start-up does not clear.
+// Stores data in memory that start-up does not clear.
 #pragma once
 
 #include <cstdint>

@@ -15,8 +15,8 @@ struct LegCompares {
 };
 
 /// For a duty cycle u, the duty cycles of the legs are (1 + u) / 2 and (1 - u) / 2. The difference of the leg duty
-/// cycles is rounded to steps of 1 / pwm_top. The duty cycle is limited to the board's limit. A duty cycle that is not
-/// a number results in zero voltage.
+/// cycles is rounded to steps of 1 / pwm_top. The duty cycle is limited to the board's limit. If the duty cycle is NaN,
+/// the voltage is zero.
 constexpr LegCompares leg_compares(float duty) {
   constexpr float limit = board::duty_limit;
   const float bounded = duty > limit ? limit : duty < -limit ? -limit : duty == duty ? duty : 0.0f;

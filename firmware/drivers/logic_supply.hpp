@@ -28,11 +28,11 @@ class LogicSupply {
     InterruptLine<LogicSupply, Interrupt::voltage_detector>::enable();
   }
 
-  /// Returns true if the supply is below 2.9 V. This threshold is 0.1 V above the brown-out reset. The reference
+  /// Returns true if the supply is below 2.9 V. The threshold is 0.1 V above the brown-out level. The reference
   /// voltages of the sensors fall with the supply.
   static bool is_low() { return registers::PWR::CSR::PVDO::is_set(); }
 
-  /// Clears the pending interrupt. Call this function in the interrupt. Returns false if the supply is no longer low.
+  /// Call this function in the voltage detector interrupt. Returns false if the supply is no longer low.
   INKWELL_INTERRUPT static bool acknowledge_interrupt() {
     Lines::PR::write(detector);
     return is_low();

@@ -73,8 +73,8 @@ void connect_analog() {
   detail::configure<Driver, input.pin>(detail::Mode::analog, Pull::none, Speed::low);
 }
 
-/// Returns true if the internal pull resistors can change the level of the pin. In this case no circuit drives the pin.
-/// A pull resistor of about 40 kOhm charges the capacitance at the pin within `settle_cycles`.
+/// Returns true if no circuit drives the pin, so that the internal pull resistors can change the level. A pull resistor
+/// of about 40 kOhm charges the capacitance at the pin within `settle_cycles`.
 template <class Driver, board::Pin number>
 bool follows_pulls(std::uint32_t settle_cycles) {
   require_claim<Driver, pin(number)>();

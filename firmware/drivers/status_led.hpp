@@ -23,7 +23,7 @@ class StatusLed {
   }
   void set(bool on) { Output::set(on != board::facts.status_led_shines_when_low); }
 
-  /// Call this function often. `time_periods` is in control periods.
+  /// Call this function often. `time_periods` is the time in control periods.
   void show(LedPattern pattern, std::uint32_t time_periods) {
     set(pattern == LedPattern::steady || time_periods % period(pattern) < period(pattern) / 2);
   }

@@ -29,8 +29,7 @@ inline constexpr std::uint32_t control_start = receive_words;
 inline constexpr std::uint32_t hid_start = control_start + control_words;
 inline constexpr std::uint32_t scope_start = hid_start + hid_words;
 /// Largest number of packets in a FIFO (RM0090, section 34.17.6). Only the last packet of a transfer may be short. A
-/// transfer starts after the previous transfer has left the FIFO. Therefore the number of words limits the number of
-/// packets.
+/// transfer starts after the previous transfer has left the FIFO.
 inline constexpr std::uint32_t packets_in_fifo_maximum = 8;
 inline constexpr std::uint32_t packet_words = usb::packet_size_maximum / 4;
 inline constexpr std::uint32_t scope_words = packets_in_fifo_maximum * packet_words;

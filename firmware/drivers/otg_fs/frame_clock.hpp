@@ -17,7 +17,8 @@ class FrameClock {
 
   void start();
 
-  /// Call this function when the bus has become silent. After this call no frame is known until the next frame begins.
+  /// Call this function when the bus has become silent. After the call, newest() returns nothing until the next start
+  /// of frame.
   void forget() { is_known_ = false; }
 
   /// Returns the newest frame, or nothing while the bus is silent. Call this function at least once per frame.

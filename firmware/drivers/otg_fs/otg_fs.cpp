@@ -25,7 +25,7 @@ constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 /// PKTSTS values of words in the receive FIFO.
 enum PacketStatus : std::uint32_t { out_data = 2, out_done = 3, setup_done = 4, setup_data = 6 };
 
-/// No other access to the core may occur between the words of a packet. In tests, other accesses to the core corrupted
+/// No other access to the core may occur between the words of a packet. In tests, an access between two words corrupted
 /// the packet and its endpoint. No interrupt handler accesses the core.
 void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   const std::byte* from = packet.data();
@@ -93,8 +93,7 @@ void OtgFs::follow_cable() {
 }
 
 // On a bus reset the core deactivates the endpoints (USBAEP). The endpoints stay enabled (EPENA), and old packets may
-// be in the receive FIFO. An OUT endpoint may stay enabled with NAK set. The function begin_receive() supports this
-// state.
+// be in the receive FIFO. The function begin_receive() supports OUT endpoints that are enabled with NAK set.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
@@ -228,14 +227,14 @@ void OtgFs::answer_control() {
   if ((sends || control_receive_waits_ || control_stall_waits_) && arm_control() && sends) fill(0);
 }
 
-// A SETUP packet may arrive between the check of the receive FIFO and the write that clears NAK. In this case the write
-// opens the endpoint for the data stage of the wrong request. Interrupts are disabled to keep the time between check
-// and write short. A second check detects a packet that arrived between the first check and the write. NAK is set again
-// within 4 us after the SETUP packet, before the host's next token ends.
+// If a SETUP packet arrives between the check of the receive FIFO and the write that clears NAK, the write opens the
+// endpoint for the wrong request. Interrupts are disabled to keep the time between check and write short. A second
+// check detects a packet that arrived between the first check and the write. NAK is set again within 4 us after the
+// SETUP packet, before the host's next token ends.
 //
 // Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. A write after
-// the arrival of the packet removes the setup-done word. The core reports the setup-done word of a packet after the
-// write.
+// the arrival of the packet removes the setup-done word. If the packet arrives after the write, the core reports the
+// setup-done word.
 bool OtgFs::arm_control() {
   const InterruptsHeld held;
   const bool receives = control_receive_waits_;

@@ -1,8 +1,7 @@
 // USB device port that uses the OTG_FS core in device mode (RM0090, chapter OTG_FS).
 //
-// All work is done in poll(). The driver uses no USB interrupt. The control interrupt wakes the main loop every 50 us,
-// the duration of one packet. A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 % of
-// the time.
+// The driver uses no USB interrupt. The control interrupt wakes the main loop every 50 us, the duration of one packet.
+// A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 % of the time.
 #pragma once
 
 #include <array>
@@ -84,7 +83,7 @@ class OtgFs final : public usb::Port {
   bool control_receive_waits_ = false;
   bool control_stall_waits_ = false;
   bool setup_waits_ = false;  ///< `setup_` has been read, but not the end of the SETUP stage
-  /// The setup-done word is lost, because NAK was cleared directly after the SETUP packet had arrived.
+  /// If true, the setup-done word is lost, because NAK was cleared directly after the SETUP packet had arrived.
   bool setup_done_is_lost_ = false;
   bool pulled_up_ = false;
   bool suspended_ = false;
