@@ -20,7 +20,7 @@ class Handover {
 
   /// Returns the slot for the next value. Returns null until the interrupt has accepted the previous value.
   T* next() { return offered_.load() ? nullptr : &slots_[used_ ^ 1u]; }
-  /// Returns true if a value has been offered but not accepted. While this function returns false, used() does not
+  /// Returns true if a value has been offered but not accepted. While is_offered() returns false, used() does not
   /// change.
   bool is_offered() const { return offered_.load(); }
   /// Offers the value in next() to the interrupt.

@@ -1,7 +1,7 @@
 // Registers and fields as types. Addresses are template arguments, so an access compiles to a load or a store.
 //
-// Headers in this folder have a fixed form. The tool tools/check/check_registers.py compares the compiled headers with
-// the manufacturer's description of the chip. The header registers/watchdog.hpp is a short example.
+// The tool tools/check/check_registers.py compares the compiled headers with the manufacturer's description of the
+// chip. The header registers/watchdog.hpp is a short example.
 //
 // The reference manual defines the register and field names.
 #pragma once
@@ -36,7 +36,7 @@ struct Field {
   static constexpr std::uint32_t from(std::uint32_t word) { return (word & mask) >> position; }
 };
 
-/// Register of 32 bits. `Value` selects a narrower access if the manual requires this access.
+/// Register of 32 bits. `Value` is a narrower type if the manual requires narrower accesses.
 template <std::uint32_t address_, class Value = std::uint32_t>
 struct Register {
   static constexpr std::uint32_t address = address_;
@@ -49,7 +49,7 @@ struct Register {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
     at() = static_cast<Value>((fields.bits | ...));
   }
-  /// Changes only the given fields. Do not use this function for a register with flags that are cleared by writing one.
+  /// Changes only the given fields. Do not use modify() for a register with flags that are cleared by writing one.
   template <class... Fields>
   static void modify(Fields... fields) {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
