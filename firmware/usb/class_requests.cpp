@@ -32,7 +32,7 @@ constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, ve
 
 constexpr std::uint16_t controller_value = static_cast<std::uint16_t>(protocol::ReportKind::input) << 8;  // no id
 
-/// Returns the report that wValue selects in GET_REPORT or SET_REPORT, or null.
+/// Returns the report that wValue selects, or null.
 const protocol::ReportInfo* report_in(const SetupPacket& setup) {
   return protocol::find_report(static_cast<protocol::ReportKind>(setup.value_high()),
                                static_cast<ReportId>(setup.value_low()));
@@ -164,7 +164,7 @@ bool Device::may_store() const {
   return protocol::may_store(link_.status.state());
 }
 
-// Detach request (DFU 1.1, section 5.1 and appendix A.2). The state changes from idle to detaching after the status
+// Detach request (DFU 1.1, section 5.1 and appendix A.2). The DFU state changes from idle to detaching after the status
 // stage. A detach request is refused while the force is on, because a detach removes the force. After a refusal,
 // GETSTATUS reports errVENDOR (section 6.1.2) until a request is accepted.
 Answer Device::firmware_update_request(const SetupPacket& setup) {

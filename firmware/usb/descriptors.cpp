@@ -121,8 +121,8 @@ constexpr auto controller_report_descriptor = join(
 
 /// USB version 2.01 announces a binary object store.
 constexpr std::size_t usb_version = 0x0201;
-/// Position of bcdDevice in the device descriptor. The function device_descriptor() writes the firmware version to this
-/// position.
+/// Position of bcdDevice in the device descriptor. The function device_descriptor() writes the firmware version to
+/// bcdDevice.
 constexpr std::size_t device_version_at = 12;
 
 constexpr auto device =
@@ -192,7 +192,7 @@ constexpr auto windows_8_1 = bytes(0x00, 0x00, 0x03, 0x06);
 
 constexpr auto property_name = utf16<1>("DeviceInterfaceGUIDs");
 
-/// Programs find an interface by this property. Each interface needs a different GUID.
+/// Programs find an interface by its DeviceInterfaceGUIDs property. Each interface needs a different GUID.
 template <std::size_t size>
 constexpr auto interface_guid(const char (&guid)[size]) {
   constexpr std::size_t value_size = 2 * (size - 1 + 2);
@@ -224,8 +224,8 @@ constexpr auto microsoft_set = []() {
 
 // ---- Binary object store (USB 2.0 ECN "Link Power Management", USB 3.2 section 9.6.2) ------------------
 
-/// This capability is mandatory for a device with USB version 2.01. No attribute is set, because the device does not
-/// support link power management.
+/// The USB 2.0 extension capability is mandatory for a device with USB version 2.01. No attribute is set, because the
+/// device does not support link power management.
 constexpr auto usb_2_0_extension = bytes(7, type(DescriptorType::device_capability), 2, 0, 0, 0, 0);
 
 /// Platform capability with the UUID of the Microsoft OS 2.0 descriptors.

@@ -33,7 +33,7 @@ enum class StringIndex : std::uint8_t {
 
 inline constexpr std::uint8_t configuration_value = 1;
 
-/// Windows requests the Microsoft OS 2.0 descriptor set with this bRequest value. The device may choose this value.
+/// bRequest value of the request for the Microsoft OS 2.0 descriptor set, as chosen by the device.
 inline constexpr std::uint8_t microsoft_request = 0x20;
 /// wIndex of that request.
 inline constexpr std::uint16_t microsoft_descriptor_index = 7;

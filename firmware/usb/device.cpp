@@ -17,11 +17,11 @@ constexpr int events_per_poll = 8;
 
 constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // indices in endpoints_
 
-/// Time for the replacement of a loaded report by a newer report. A replacement needs this time before the next control
-/// interrupt and before the next start of frame. While a report is replaced, the host cannot read a report.
+/// Time for the replacement of a loaded report by a newer report. A replacement must be complete before the next
+/// control interrupt and before the next start of frame. While a report is replaced, the host cannot read a report.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// The main loop needs this time to detect a new pose, fill the scope FIFO and load the pose. The final pose is sampled
+/// Time in which the main loop detects a new pose, fills the scope FIFO and loads the pose. The final pose is sampled
 /// shortly before the start of frame.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
@@ -29,8 +29,8 @@ constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 /// main loop is late. A transaction of all parameters causes the longest delay, 0.3 ms including control interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
-/// After this number of consecutive unread reports (0.1 s), the device assumes that the host does not poll. In this
-/// case unread reports do not count as dropped.
+/// After 0.1 s of unread reports, the device assumes that the host does not poll. Without a polling host, unread
+/// reports do not count as dropped.
 constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
 
 constexpr std::int32_t cycles_in(float time_s, const Identity& identity) {
@@ -189,8 +189,8 @@ void Device::restart(Endpoint& endpoint) {
   }
 }
 
-// The host may poll directly after each start of frame. The pose is loaded near the end of each bus frame. The loaded
-// pose is the last pose that can be loaded in time. A spare pose is loaded earlier, because the main loop may be
+// The host may poll directly after each start of frame. The pose is loaded near the end of each bus frame. The device
+// loads the newest pose that is available in time. A spare pose is loaded earlier, because the main loop may be
 // delayed.
 void Device::send_pose() {
   const std::optional<BusFrame> bus_frame = port_.bus_frame();
@@ -227,8 +227,8 @@ void Device::send_pose() {
   if (!is_spare) offer_controller_report();
 }
 
-// If the next poll is due, every bus frame replaces the controller report. The controller report is as recent as the
-// pose.
+// When the next poll is due, the device replaces the controller report in every bus frame. The controller report is as
+// recent as the pose.
 void Device::offer_controller_report() {
   Endpoint& endpoint = endpoints_[controller_in];
   const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;

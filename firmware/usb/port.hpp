@@ -41,11 +41,11 @@ struct BusFrame {
 
 /// Endpoint hardware. Endpoint addresses have bit 7 set for IN. Every call returns within microseconds.
 ///
-/// Endpoint 0 is open after a reset and always accepts SETUP. While a SETUP event is pending in next_event(), send(),
-/// receive() and stall() have no effect on endpoint 0. These calls would answer an older request.
+/// Endpoint 0 is open after a reset and always accepts SETUP. While a SETUP event is pending, send(), receive() and
+/// stall() have no effect on endpoint 0, because they would answer an older request.
 class Port {
  public:
-  /// Writes the next event to `event`. Returns false if there is no event. The call continues the transfers in
+  /// Writes the next event to `event`. Returns false if there is no event. next_event() continues the transfers in
   /// progress.
   virtual bool next_event(Event& event) = 0;
 
@@ -66,7 +66,7 @@ class Port {
   /// Cancels a transfer in progress, ends a stall, and sets the data toggle to 0.
   virtual void clear_stall(std::uint8_t endpoint_address) = 0;
 
-  /// Starts an IN transfer. `data` may be empty, and must not change until `sent` or cancel(). The port sends no
+  /// Starts an IN transfer. `data` may be empty. `data` must not change until `sent` or cancel(). The port sends no
   /// additional empty packet after the last full packet. Only one transfer may be in progress. On endpoint 0 a transfer
   /// is at most one packet.
   virtual void send(std::uint8_t endpoint_address, std::span<const std::byte> data) = 0;
