@@ -1,7 +1,7 @@
 // Rows of a force law at the end of the parameter and signal tables.
 //
-// A firmware image contains one force law and its rows. A PC program reads these rows from the device. Window, files
-// and command line use the added rows like all other rows.
+// A firmware image contains one force law and the rows of this force law. A PC program reads the rows of the force law
+// from the device. Window, files and command line use the added rows like all other rows.
 #pragma once
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace inkwell::protocol {
 
-/// Rows of the force law. A PC program sets this pointer when it opens a device with a force law. The rows are never
-/// freed or changed, because another thread may read the rows.
+/// Rows of the force law. A PC program sets `added_rows` when the program opens a device with a force law. The rows are
+/// never freed or changed, because another thread may read the rows.
 template <class Info>
 inline constinit std::atomic<const std::span<const Info>*> added_rows = nullptr;
 
 template <class Info>
 inline constexpr Info nameless_row{};
 
-/// Table with rows added at run time. `own` is the number of rows without the added rows. Constant expressions use the
-/// table instead of this class.
+/// Table with rows added at run time. `own` is the number of rows in the fixed table. Constant expressions use the
+/// fixed table instead of this class.
 ///
 /// The constructor must not call std::is_constant_evaluated(). GCC 14 evaluates std::is_constant_evaluated() to true if
 /// a reference is bound to the new object. A range-based for loop would therefore omit the added rows.

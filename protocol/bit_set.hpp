@@ -5,7 +5,7 @@
 
 namespace inkwell::protocol {
 
-/// Neither numbers nor sets of another type convert to a set.
+/// Numbers and sets of another type do not convert to a BitSet implicitly.
 template <class Bit>
 class BitSet {
  public:

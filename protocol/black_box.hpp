@@ -24,8 +24,8 @@ inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + bl
 /// Exception numbers of a failed crystal (NMI) and a stalled main loop (PendSV).
 inline constexpr std::uint32_t crystal_exception = 2, hang_exception = 14;
 
-/// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 without a CPU fault
-/// or a stalled main loop.
+/// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 if there is no
+/// crash record.
 struct CrashFacts {
   /// Exception number: crystal_exception, hang_exception, 3 to 6 for a CPU fault, 16 or more for an unexpected
   /// interrupt.
@@ -66,13 +66,13 @@ struct BlackBoxRequest {
   std::uint16_t first_row;
 };
 
-/// All signals of one control period in table order, followed by the signals of the force law.
+/// Table signals of one control period in table order, followed by the signals of the force law.
 struct BlackBoxRow {
   std::uint32_t time_periods;
   float values[signal_count + force_law_signals_maximum];
 };
 
-/// Number of rows in the device's answer buffer.
+/// Largest number of rows in a BlackBoxRowsReport.
 inline constexpr std::size_t black_box_report_rows = (sizeof(ParametersReport) - 8) / sizeof(BlackBoxRow);
 
 /// Feature report, get. Consecutive rows in time order.

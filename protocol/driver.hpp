@@ -17,7 +17,7 @@
 
 namespace inkwell::protocol {
 
-/// Lifetime of a claim without reports, in board time.
+/// Time after which a claim without reports expires, in board time.
 inline constexpr float claim_expiry_s = 1.0f;
 
 /// Longest program name. Longer program names are truncated.

@@ -31,7 +31,7 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(position + 1) == other.substr(position + 1);
 }
 
-// A call of one of these functions is a compiler error with the function name.
+// A call of these functions causes a compiler error that contains the function name.
 void the_table_has_no_three_rows_of_this_name();
 void the_three_rows_differ_in_unit_range_or_kind();
 

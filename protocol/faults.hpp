@@ -12,7 +12,7 @@ namespace inkwell::protocol {
 inline constexpr float over_current_ratio = 1.5f;
 /// Largest age of the supply and gimbal measurements.
 inline constexpr float samples_stale_s = 0.001f;
-/// Longest allowed pass of the main loop. The shortest watchdog timeout is longer than main_loop_stalled_s.
+/// Longest allowed duration of a main loop pass. The shortest watchdog timeout is longer than main_loop_stalled_s.
 inline constexpr float main_loop_stalled_s = 0.01f;
 /// Largest deviation of the bridge supply from its mean, in either direction (supply_ripple.hpp).
 inline constexpr float supply_ripple_V = 1.0f;
@@ -33,7 +33,7 @@ struct CodeInfo {
 
 namespace inkwell::protocol {
 
-/// One more than the last code.
+/// Last fault code plus one.
 inline constexpr std::size_t fault_code_end = std::size_t{fault_table.back().code} + 1;
 
 inline constexpr CodeInfo unknown_code{0xFFFF, "unknown", "The device sent a code that is unknown to this companion.",

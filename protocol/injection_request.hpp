@@ -54,7 +54,7 @@ constexpr std::string_view required_location(InjectionLocation location) {
   return "";
 }
 
-/// Returns the help text of a row with values instead of names in braces.
+/// Returns the help text of a row. Values replace the names in braces.
 inline std::string help_of(const InjectionInfo& row) {
   constexpr std::string_view figure = "{wire_spike_us}";
   const std::string_view text = row.help;

@@ -31,7 +31,7 @@ struct ParameterInfo {
   std::string_view group;
   const char* help = "";
   bool belongs_to_arm;  ///< true if every arm description sets it
-  /// True if the parameter can change only while the force is off. A change of the arm's geometry would make the force
+  /// If true, the parameter can change only while the force is off. A change of the arm's geometry would make the force
   /// jump.
   bool needs_force_off;
 };
@@ -48,7 +48,7 @@ inline constexpr std::size_t parameter_count = parameter_table.size();
 inline constexpr std::size_t force_law_parameters_maximum = 12;
 inline constexpr std::uint16_t force_law_first_id = 1000;
 
-/// Returns the table, followed by the parameters of a known force law.
+/// Returns the table rows and the parameters of a known force law.
 inline KnownRows<ParameterInfo, parameter_count> known_parameters() { return KnownRows(parameter_table); }
 
 constexpr const ParameterInfo& info(Parameter parameter) {
@@ -92,7 +92,7 @@ inline constexpr Bounds parameter_bounds[] = {
     {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad, false},
 };
 
-/// Values of all parameters in table order, followed by the parameters of the force law. Unused values are 0.
+/// Values of the table parameters in table order, followed by the parameters of the force law. Unused values are 0.
 struct ParameterSet {
   std::array<float, parameter_count + force_law_parameters_maximum> values;
 
@@ -111,7 +111,7 @@ constexpr ParameterSet table_defaults() {
   return set;
 }
 
-/// Returns the defaults of the table, followed by the defaults of a known force law.
+/// Returns the defaults of the table and of a known force law.
 inline ParameterSet default_parameters() {
   ParameterSet set{};
   const auto rows = known_parameters();

@@ -12,7 +12,7 @@
 
 namespace inkwell::protocol {
 
-/// Returns the number of bytes of the printable character at the beginning of a text. Returns 0 for an empty text, a
+/// Returns the size in bytes of the printable character at the beginning of a text. Returns 0 for an empty text, a
 /// control character, a change of the writing direction, or invalid UTF-8.
 constexpr std::size_t printable_length(std::string_view text) {
   if (text.empty()) return 0;
@@ -49,7 +49,7 @@ inline std::string plain_text(std::string_view text) {
   return plain;
 }
 
-/// Like plain_text(), but retains tabs and line feeds. This function is for multi-line text.
+/// Filters multi-line text like plain_text(), but retains tabs and line feeds.
 inline std::string plain_lines(std::string_view text) {
   std::string plain;
   while (!text.empty()) {

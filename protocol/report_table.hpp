@@ -20,9 +20,9 @@ namespace inkwell::protocol {
 enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
 
 // clang-format off
-/// X(id, usage, kind, get, set, bytes, set_bytes, meaning). `get` and `set` are the structures that are read and
-/// written, or `none`. `bytes` is the declared size for both structures. `set_bytes` is the smallest size of a written
-/// report, or 0.
+/// X(id, usage, kind, get, set, bytes, set_bytes, meaning). `get` and `set` are the structures for reading and writing,
+/// or `none`. `bytes` is the declared size for both structures. `set_bytes` is the smallest size of a written report,
+/// or 0.
 #define INKWELL_REPORTS(X)                                                                                             \
   X(pose, 2, input, PoseReport, none, sizeof(PoseReport), 0, "The newest pose. The interrupt endpoint also sends it every millisecond.") \
   X(command, 3, output, none, CommandReport, sizeof(CommandReport), sizeof(CommandReport), "A command. The report is also a sign of life.") \

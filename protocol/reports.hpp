@@ -17,7 +17,7 @@
 // a written report. Some hosts pad every report to the longest report length. The device pads reports with zeros to the
 // declared size or the requested length (HID 1.11, section 7.2.1).
 //
-// ControllerReport has a separate interface. Every program that supports joysticks can read this interface.
+// ControllerReport has a separate interface. Every program that supports joysticks can read ControllerReport.
 #pragma once
 
 #include <algorithm>
@@ -208,8 +208,8 @@ inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 /// Output report: the force of a program at the probe. A program sends at most one report per millisecond. The board
 /// interpolates linearly to the requested force within `interval_ms`. The parameters force_limit_N and
 /// program_force_change_N_per_s limit the force. The force fades if no report arrives for program_force_expiry_s. The
-/// device refuses and counts invalid reports. The device also refuses reports with an old pose or with a claim that is
-/// not the driver's.
+/// device refuses and counts invalid reports. The device refuses reports with a pose older than
+/// force_pose_age_maximum_ms or without the driver's claim.
 struct ForceReport {
   ReportId report_id = ReportId::force;
   ForceMode mode;
@@ -429,7 +429,8 @@ constexpr std::uint32_t hash_signals(const Table& table) {
 }
 }  // namespace detail
 
-/// FNV-1a hashes of the tables. The hashes are equal in firmware and PC program if ids, names and units agree.
+/// FNV-1a hashes of the tables. The hashes are equal in firmware and PC program if ids, names, units and signal
+/// encodings agree.
 inline constexpr std::uint32_t parameter_table_hash = detail::hash_parameters(parameter_table);
 inline constexpr std::uint32_t signal_table_hash = detail::hash_signals(signal_table);
 

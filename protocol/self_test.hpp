@@ -1,6 +1,6 @@
 // Self-test items, results and report.
 //
-// The self-test runs after each start, as soon as the current sensor offsets are measured, and on command. During the
+// The self-test runs on command, and after each start when the current sensor offsets have been measured. During the
 // self-test the state is `testing`. Flash, RAM and watchdog are tested only at start-up.
 #pragma once
 

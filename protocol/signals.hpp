@@ -48,7 +48,7 @@ inline constexpr std::size_t signal_count = signal_table.size();
 inline constexpr std::size_t force_law_signals_maximum = 8;
 static_assert(signal_count + force_law_signals_maximum <= 256, "a signal's id has eight bits");
 
-/// Returns the table, followed by the signals of a known force law.
+/// Returns the table rows and the signals of a known force law.
 inline KnownRows<SignalInfo, signal_count> known_signals() { return KnownRows(signal_table); }
 
 constexpr const SignalInfo& info(Signal signal) {
@@ -63,7 +63,7 @@ constexpr Signal of_axis(EachAxis<Signal> rows, std::size_t axis) { return rows[
 /// Returns the signal of motor, joint or axis `number` (1, 2 or 3, as in the row names).
 constexpr Signal of_number(EachAxis<Signal> rows, int number) { return rows[static_cast<std::size_t>(number) - 1]; }
 
-/// Values of all signals in one control period in table order, followed by the signals of the force law.
+/// Values of one control period: table signals in table order, followed by the signals of the force law.
 struct SignalValues {
   std::array<float, signal_count + force_law_signals_maximum> values;
 

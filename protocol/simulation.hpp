@@ -1,12 +1,12 @@
 // Table of quantities that exist only in a simulation: X(name, unit, help).
 //
-// A virtual board records these quantities in every control period, in table order. Recordings use the names as column
-// names.
+// A virtual board records all simulated quantities in every control period, in table order. Recordings use the names as
+// column names.
 #pragma once
 
-// To add a quantity, add a row here and a case to value_of() in boards/virtual/plant/truth.cpp. The compiler
-// reports a missing case. A new value also needs a member of Truth (plant/truth.hpp). Recordings, plots and the
-// control socket use this table.
+// To add a quantity, add a row here and a case to value_of() in boards/virtual/plant/truth.cpp. The compiler reports a
+// missing case. A new value needs a member of Truth (plant/truth.hpp). Recordings, plots and the control socket use
+// this table.
 
 #include <array>
 #include <cstddef>

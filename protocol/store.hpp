@@ -96,7 +96,7 @@ INKWELL_STORE_CONTENTS(X)
 #undef X
 }  // namespace detail
 
-/// Returns true if the board may store or erase parameters in this state.
+/// Returns true if the board may store or erase parameters in `state`.
 constexpr bool may_store(State state) {
   return state == State::unreferenced || state == State::ready || state == State::fault;
 }

@@ -1,5 +1,5 @@
-// States, transitions and monitored faults, from protocol/tables/supervision.toml. The firmware's supervisor uses these
-// tables. Firmware tests cover every cell.
+// States, transitions and monitored faults, from protocol/tables/supervision.toml. The firmware's supervisor uses the
+// tables. Firmware tests cover every cell of the tables.
 #pragma once
 
 #include <array>
@@ -72,7 +72,7 @@ inline constexpr States with_force = []() {
   return states;
 }();
 
-/// A bit mask is faster than the table in the control interrupt.
+/// In the control interrupt, a bit mask is faster than a table look-up.
 constexpr bool force_is_on(State state) { return with_force.contains(state); }
 
 // ---- transitions -------------------------------------------------------------------------------------------
@@ -109,7 +109,7 @@ enum class Off : std::uint8_t {
   /// The low-side switches short the motors until the probe is slow. A motor current above the current for the force
   /// limit switches the bridges off for one period.
   brake,
-  /// Brakes with a lower current threshold than `brake`, because the hand may continue its motion.
+  /// The current threshold is lower than for `brake`, because the hand may continue to move.
   brake_gently,
 };
 
@@ -163,7 +163,7 @@ constexpr Conditions conditions(Predicate is_so) {
   return bits;
 }
 
-/// These faults invalidate the reference in every state, even if another fault is reported.
+/// Faults that invalidate the reference in every state, regardless of other faults.
 inline constexpr Conditions voiding_conditions = conditions([](const Condition& row) { return row.voids_reference; });
 
 // ---- consistency of the tables -----------------------------------------------------------------------------

@@ -5,8 +5,8 @@
 
 namespace inkwell::protocol::usb {
 
-/// Vendor identifier of pid.codes and its product identifier for private tests. The page docs/flashing.md describes how
-/// to register a product identifier.
+/// Vendor identifier of pid.codes, and the product identifier for private tests. The page docs/flashing.md describes
+/// how to register a product identifier.
 inline constexpr std::uint16_t vendor_id = 0x1209;
 inline constexpr std::uint16_t product_id = 0x0001;
 inline constexpr bool is_test_identity = true;
@@ -28,7 +28,7 @@ inline constexpr std::uint8_t controller_interval_ms = 8;
 /// Run-time interface of USB device firmware upgrade 1.1. DFU_DETACH starts the boot loader in the chip's ROM.
 inline constexpr std::uint8_t firmware_update_interface = 3;
 
-/// Identifiers of the boot loader in the chip's ROM (AN2606), which are the same in every STM32.
+/// Identifiers of the boot loader in the chip's ROM. All STM32 chips have the same identifiers (AN2606).
 inline constexpr std::uint16_t boot_loader_vendor_id = 0x0483;
 inline constexpr std::uint16_t boot_loader_product_id = 0xDF11;
 inline constexpr char boot_loader_product[] = "boot loader";

@@ -88,7 +88,7 @@ struct ImportRequest {
 /// Values of the Linux enum usb_device_speed.
 enum class Speed : std::uint32_t { full = 2 };
 
-/// Follows the OperationHeader in the reply to a successful import.
+/// This struct follows the OperationHeader in the reply to a successful import.
 struct Device {
   Text<256> path;  ///< on the server
   BusId bus_id;
@@ -141,8 +141,8 @@ constexpr std::uint32_t device_of(std::uint32_t bus_number, std::uint32_t device
 /// `packet_count` of a transfer that is not isochronous. Linux itself sends 0.
 inline constexpr std::uint32_t not_isochronous = 0xFFFF'FFFF;
 
-/// If the direction is OUT, `length` bytes of data follow this struct. The `packet_count` IsochronousPackets follow the
-/// data.
+/// If the direction is OUT, `length` bytes of data follow this struct. `packet_count` entries of IsochronousPacket
+/// follow the data.
 struct Submit {
   TransferHeader header{.command = Command::submit};
   Big32 transfer_flags;  ///< Linux URB_ flags
