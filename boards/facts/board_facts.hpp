@@ -1,7 +1,6 @@
 // Types and common constants of board facts.
 //
-// The firmware and the virtual board read the facts of a board. The header checks.hpp rejects invalid facts. Section
-// titles refer to RM0090 (reference manual) and to the STM32F405 data sheet (tables of alternate functions).
+// The firmware and the virtual board read the facts of a board. The header checks.hpp rejects invalid facts.
 #pragma once
 
 // The following steps add a board.
@@ -157,13 +156,14 @@ struct Facts {
   /// (AN2606).
   Pin bridge_enable;
   /// While the bridges are on, the heartbeat rises with each control interrupt and falls before the interrupt returns.
-  /// The pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
+  /// The heartbeat pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
   Pin bridge_heartbeat;
   /// The monostable output is connected to the bridge enable inputs. The bridges can switch only while the monostable
   /// output is high.
   Pin bridge_hold;
   /// Open-drain fault output of the bridges, active low. The fault wire is connected to a break input of TIM1 and to a
-  /// break input of TIM8. A low level switches the timer outputs off in hardware (RM0090, "Using the break function").
+  /// break input of TIM8. A low level at a break input switches the timer outputs off in hardware (RM0090, "Using the
+  /// break function").
   PeripheralPin bridge_fault_tim1, bridge_fault_tim8;
   AnalogInput motor_current[3];  ///< ADC n converts the current of motor n; all ADCs convert simultaneously
   /// The regular sequence of ADC1 converts the gimbal potentiometers (yaw, pitch, roll) and the supply.
@@ -190,7 +190,7 @@ struct Facts {
   /// capacitor.
   float current_filter_ohm, current_filter_F, gimbal_track_ohm, gimbal_filter_F, supply_filter_F;
   /// Pull-down at each current input. If the wire breaks, the pull-down changes the reading faster than a real current
-  /// can change.
+  /// would.
   float current_pull_down_ohm;
 
   /// Limits of the hold time. The tolerances of monostable, resistor and capacitor add up to one sixth.
