@@ -1,7 +1,7 @@
 // Flash interface: wait states, lock, sector erase and programming (RM0090, "Embedded Flash memory interface").
 //
 // During an erase or program operation the processor waits at each access to the flash (RM0090, "Read-while-write").
-// Code in RAM continues. A reset during the operation leaves partially changed contents.
+// Code in RAM continues. A reset during an erase or program operation leaves partially changed contents.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,7 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void hold_up() override;
   /// Number of erase and program operations since construction.
   std::uint64_t operations() const { return operations_; }
-  /// Interrupts the power during flash operation number `operation`, counted from 1; 0 disables the interruption. Power
+  /// Cuts the power during flash operation number `operation`, counted from 1. With 0, the power is not cut. Power
   /// returns immediately.
   void cut_power_at(std::uint64_t operation) { cut_at_ = operation; }
   /// Call this function when the supply voltage or the clock has changed.

@@ -10,8 +10,8 @@
 
 namespace inkwell::virtual_board {
 
-/// A block of 32-bit registers. A narrow read returns a part of the word. A narrow write replaces a part of the word
-/// from stored().
+/// A block of 32-bit registers. A narrow read returns a part of the word. A narrow write replaces a part of the stored
+/// word.
 class RegisterBlock : public Peripheral {
  public:
   std::uint32_t read(std::uint32_t offset, unsigned size) final {

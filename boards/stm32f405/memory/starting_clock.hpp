@@ -5,7 +5,7 @@
 
 namespace inkwell::virtual_board {
 
-/// A peripheral clock starts some cycles after its enable bit is set. RCC calls start(), and the bus calls includes().
+/// A peripheral clock starts some cycles after its enable bit is set.
 class StartingClock {
  public:
   /// `mask` selects the bits of the enable register that were set. `runs_at` is the core cycle at which the clocks run.

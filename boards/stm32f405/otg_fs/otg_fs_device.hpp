@@ -140,8 +140,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void write_usb_configuration(std::uint32_t value);
   bool pins_connected() const;
   bool clock_is_exact() const;
-  /// Returns true if the firmware has not yet acknowledged a bus reset. Actions that were valid before the reset are
-  /// allowed until the firmware acknowledges the reset.
+  /// Returns true if the firmware has not yet acknowledged a bus reset. Actions that were valid before the bus reset
+  /// are allowed until the firmware acknowledges the bus reset.
   bool reset_is_unseen() const;
   void check_connection();
   void check_bus_power();

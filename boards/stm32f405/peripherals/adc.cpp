@@ -122,8 +122,8 @@ std::uint32_t Adc::convert(double voltage_V) const {
 }
 
 /// Charges the sampling capacitor, starting from the voltage of the previous channel. The pin capacitor and the
-/// sampling capacitor share their charge, and the source recharges both capacitors. The switch has its maximum
-/// resistance (data sheet, figure "Typical connection diagram using the ADC").
+/// sampling capacitor share their charge, and the source recharges both capacitors. The model uses the maximum
+/// resistance of the sampling switch (data sheet, figure "Typical connection diagram using the ADC").
 double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   constexpr double switch_ohm = 6000.0, sampling_F = 4e-12;
   const double both_F = source.capacitance_F + sampling_F;

@@ -12,7 +12,7 @@ class DmaRequests {
  public:
   virtual ~DmaRequests() = default;
   virtual bool adc_request(unsigned index) = 0;
-  /// Returns true if a stream for this converter has an interrupt enabled.
+  /// Returns true if an interrupt is enabled in a DMA stream of the converter.
   virtual bool interrupts_for_adc(unsigned index) const = 0;
   /// `source` is 0 for the update event and 1 to 4 for the channels.
   virtual bool timer_request(unsigned timer, unsigned source) = 0;
@@ -34,7 +34,7 @@ class ConverterTriggers {
   virtual ~ConverterTriggers() = default;
   /// Handles a timer event: a compare match of channel 1 to 4, or trigger_output (timers.hpp).
   virtual void timer_trigger(unsigned timer, unsigned channel) = 0;
-  /// Returns true if the processor waits for conversions started by the timer event.
+  /// Returns true if the processor waits for conversions that the timer event starts.
   virtual bool listens_to_timer(unsigned timer, unsigned channel) const = 0;
   virtual void external_line(unsigned line) = 0;
 };
@@ -77,7 +77,7 @@ class ExternalLines {
  public:
   virtual ~ExternalLines() = default;
   virtual void pin_changed(unsigned port, unsigned pin, bool high) = 0;
-  /// Sets the level of an internal line, 16 to 22.
+  /// Sets the level of an internal EXTI line, 16 to 22.
   virtual void internal_line(unsigned line, bool high) = 0;
 };
 

@@ -12,9 +12,9 @@ struct PinName {
   unsigned pin;
   bool operator==(const PinName&) const = default;
 
-  /// Returns the pin with this name, or nothing if the name is invalid.
+  /// Returns nothing if the name is invalid.
   static std::optional<PinName> find(std::string_view name);
-  /// Returns the pin with this name. Throws std::invalid_argument if the name is invalid.
+  /// Throws std::invalid_argument if the name is invalid.
   static PinName of(std::string_view name);
   std::string text() const { return std::string("P") + port + std::to_string(pin); }
 };

@@ -39,7 +39,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
   void let_crystal_swing(bool swings);
   /// Sets the deviation of the crystal from its nominal frequency.
   void drift_crystal(std::int32_t ppm);
-  /// Sets PWR_CR.VOS. The highest clock frequencies require scale 1.
+  /// Sets PWR_CR.VOS. The highest clock frequencies require voltage scale 1.
   void set_voltage_scale(bool scale_1);
 
  protected:

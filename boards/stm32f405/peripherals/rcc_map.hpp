@@ -25,8 +25,8 @@ struct RccRegisters {
         pllrdyie{"PLLRDYIE", 12}, plli2srdyie{"PLLI2SRDYIE", 13}, cssf{"CSSF", 7, 1, Access::r},
         cssc{"CSSC", 23, 1, Access::w};
   } cir{{"CIR", 0x0C}};
-  /// Each bit resets one peripheral. The same bit of the register at offset + 0x20 enables the clock of this
-  /// peripheral.
+  /// Each bit of a reset register resets one peripheral. The same bit of the register at offset + 0x20 enables the
+  /// peripheral's clock.
   Register ahb1rstr{"AHB1RSTR", 0x10}, ahb2rstr{"AHB2RSTR", 0x14}, ahb3rstr{"AHB3RSTR", 0x18},
       apb1rstr{"APB1RSTR", 0x20}, apb2rstr{"APB2RSTR", 0x24};
   struct : Register {

@@ -256,7 +256,7 @@ void RealTimeClock::second_over() {
   update();
 }
 
-// The interrupts of the clock pass through the EXTI edge detectors.
+// RTC interrupts pass through the EXTI edge detectors.
 void RealTimeClock::update() {
   external_lines_.internal_line(alarm_line, (rtc.cr.alraie.in(control_) && rtc.isr.alraf.in(status_)) ||
                                                 (rtc.cr.alrbie.in(control_) && rtc.isr.alrbf.in(status_)));

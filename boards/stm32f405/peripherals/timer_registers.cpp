@@ -281,8 +281,7 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
       }
       return machine_.log.note("TIM" + std::to_string(traits_.number), offset, true, value);
   }
-  // The register write has changed the configuration of channels, triggers or interrupts. A channel without preload
-  // uses the new compare value immediately.
+  // A channel without preload uses the new compare value immediately.
   settle();
   listen();
   configure_inputs();

@@ -33,7 +33,7 @@ class CycleCounter {
         known != nullptr && known->is_current && known->price.address == address && known->price.bytes == bytes;
     return fits ? &known->price : nullptr;
   }
-  /// Returns the price of the block `code` at `address`. The reference is valid while the block runs.
+  /// Returns the price of the block `code` at `address`. The returned reference is valid while the block runs.
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
   /// Returns the wait cycles for branch refill and FPU if the block starts at cycle `now`.
   unsigned enter(const BlockPrice& block, std::uint64_t now);

@@ -27,8 +27,8 @@ class LineCache {
 
  private:
   static constexpr std::uint32_t no_line = ~0u;
-  /// Entry of a ring in the order of last use. Entry 0 is a sentinel without a line. In the sentinel, `newer` is the
-  /// most recently used entry, and `older` is the least recently used entry.
+  /// Entry of a ring. The ring is in the order of last use. Entry 0 is a sentinel without a line. In the sentinel,
+  /// `newer` is the most recently used entry, and `older` is the least recently used entry.
   struct Entry {
     std::uint32_t line = no_line;
     std::uint8_t older = 0, newer = 0;

@@ -54,7 +54,7 @@ class Chip {
   /// first. Call reset() afterwards. Throws ChipError if the file is missing, truncated or too large, or if it is not a
   /// 32-bit ARM executable.
   void load_elf(const std::filesystem::path& path);
-  /// Resets processor and peripherals like the NRST pin. Board time continues.
+  /// Resets processor and peripherals, as a low level at the NRST pin does. Board time continues.
   void reset(ResetCause cause = ResetCause::pin);
 
   /// Runs until board time reaches `when` or the firmware exits. The function calls the circuit, the peripherals and
@@ -63,21 +63,21 @@ class Chip {
   /// Starts the firmware with the "go" command of the boot loader (AN2606). Call reset() before start_by_boot_loader().
   /// Clocks, CCM and vector table keep the settings of the boot loader.
   void start_by_boot_loader();
-  /// Starts the boot loader, like a reset with BOOT0 high.
+  /// Starts the boot loader, as a reset with BOOT0 high does.
   void start_boot_loader();
-  /// Sets the program counter between two instructions, like a debugger or a bit flip. Not allowed inside run_until().
+  /// Sets the program counter between two instructions. Not allowed inside run_until().
   void jump(std::uint32_t address);
   // Injected faults. Calls are not allowed inside run_until(). A reset clears stall(), stall_thread() and halt(); all
   // other injected faults remain.
-  /// Stops the core for `duration`, like a long bus wait. The peripherals continue.
+  /// Stops the core for `duration`. The peripherals continue.
   void stall(Ticks duration);
-  /// Stops thread mode for `duration`, like an endless loop; exceptions are still handled. If the program masks
-  /// exceptions, thread mode stops only after the instruction that unmasks the exceptions.
+  /// Stops thread mode for `duration`. Exceptions are still handled. If the program masks exceptions, thread mode stops
+  /// only after the instruction that unmasks the exceptions.
   void stall_thread(Ticks duration);
-  /// Halts the core for `duration` like a debug probe. The peripherals selected in DBGMCU_APBx_FZ freeze. Board time
-  /// continues, in contrast to a halt by debug_port().
+  /// Halts the core for `duration`, as a debug probe does. The peripherals selected in DBGMCU_APBx_FZ freeze. Board
+  /// time continues, in contrast to a halt by debug_port().
   void halt(Ticks duration);
-  /// For `duration`, inverts the level that the circuit drives at the pin, like a voltage spike.
+  /// For `duration`, inverts the level that the circuit drives at the pin.
   void glitch(char port, unsigned pin, Ticks duration);
   /// While `lost` is true, the exception does not reach the core.
   void lose_exception(unsigned exception, bool lost);
@@ -89,8 +89,8 @@ class Chip {
   void stop_converter(unsigned number, bool stopped);
   /// Prevents both DMA controllers from accepting requests while `stopped` is true.
   void stop_dma(bool stopped);
-  /// Interrupts the power in the middle of an erase or program operation. `number` 1 selects the next operation. Power
-  /// returns immediately. `number` 0 cancels the interruption.
+  /// Cuts the power in the middle of an erase or program operation. `number` 1 selects the next operation. Power
+  /// returns immediately. `number` 0 cancels the power cut.
   void cut_power_at_flash_operation(std::uint64_t number);
   /// Number of erase and program operations since construction.
   std::uint64_t flash_operations() const;
@@ -134,7 +134,7 @@ class Chip {
   /// Calls `changed` with the exception number when a handler starts or resumes, and with 0 when thread mode resumes.
   /// An empty function stops the calls.
   void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
-  /// Callback for broken rules, once per combination of rule and peripheral or pin.
+  /// Callback for each broken rule, once per combination of rule and peripheral or pin.
   std::function<void(const Violation& violation)> on_violation;
   /// Callback after each order of the boot loader. The callback returns the next order.
   std::function<LoaderOrder()> on_boot_loader;

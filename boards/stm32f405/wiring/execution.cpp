@@ -194,7 +194,8 @@ void Execution::sleep_until(Ticks when) {
   }
 }
 
-/// Returns true if the exception has a handler. Otherwise the function enters HardFault or locks up the processor.
+/// Returns true if the exception has a handler. Without a handler, the function enters HardFault or locks up the
+/// processor.
 bool Execution::has_handler(unsigned exception) {
   const std::uint32_t vector_address = system_control_.vector_table() + 4 * exception;
   const std::uint32_t vector = machine_.memory.word(vector_address);
