@@ -14,7 +14,7 @@ constexpr Ticks byte_ticks = 8 * bit_ticks;
 constexpr Ticks transaction_bytes = 13;
 constexpr Ticks refused_in_bytes = 8;
 constexpr Ticks start_of_frame_bytes = 6;
-// The controller polls an endpoint that is not ready at increasing intervals. Real controllers use different intervals.
+// The poll interval of an endpoint increases while the endpoint is not ready.
 constexpr Ticks retry_first = refused_in_bytes * byte_ticks;
 constexpr Ticks retry_maximum = ticks(nominal_frame_s / 4);
 constexpr unsigned frames_until_suspend = 3;

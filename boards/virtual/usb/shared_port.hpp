@@ -3,7 +3,7 @@
 // USB/IP allows only one importer per device. SharedPort lets several programs import the same device. The following
 // rules apply.
 //
-//   Every program that has requested an interrupt IN report receives the report.
+//   Each interrupt IN report is sent to every program that has requested the report.
 //
 //   The first program with a bulk request uses the bulk endpoints until it disconnects or unlinks its requests. Bulk
 //   requests of other programs fail with the status "busy".
