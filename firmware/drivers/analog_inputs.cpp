@@ -78,7 +78,7 @@ constexpr std::uint32_t adc1_armed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1)
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
-  // By default the sequence has one channel and uses only the field JSQ4.
+  // After a reset, the injected sequence has one channel and uses only the field JSQ4.
   Converter::JSQR::write(typename Converter::JSQR::JSQ4(input.channel));
 }
 
@@ -120,8 +120,8 @@ INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destin
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
 
-/// The sequence is restarted after this number of periods without a complete sequence. A late control interrupt causes
-/// one period without a complete sequence.
+/// The sequence is restarted after four periods without a complete sequence. A late control interrupt causes one period
+/// without a complete sequence.
 constexpr std::uint32_t patience_periods = 4;
 
 }  // namespace
@@ -142,7 +142,8 @@ void AnalogInputs::start() {
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);
-  // The reference starts within 10 us (data sheet, "Embedded internal reference voltage"), before arm() is called.
+  // The internal reference starts within 10 us (data sheet, "Embedded internal reference voltage"), before arm() is
+  // called.
   ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1), ADC_COMMON::CCR::TSVREFE(1));
   set_up_injected<ADC1>(board::facts.motor_current[0]);
   set_up_injected<ADC2>(board::facts.motor_current[1]);

@@ -47,7 +47,7 @@ class AnalogInputs {
     std::array<float, 3> current_A;  ///< from leg A to leg B of each bridge; includes the amplifier offsets
     bool are_new;                    ///< each converter has measured since the previous call
   };
-  /// Returns the currents at the last update. Acknowledges the interrupt.
+  /// Returns the currents at the last timer update. Acknowledges the interrupt.
   Currents take_currents();
 
   /// Starts the conversion of gimbal, supply and reference. The conversion takes 36 us. Call this function once per

@@ -31,7 +31,7 @@ class Device final : private ControlRequests {
   /// The arguments must outlive the device. The device is inactive on the bus before the first poll().
   Device(Port& port, link::Link& link, const Identity& identity);
 
-  /// Handles bus events and refills the endpoints. The main loop calls this function at least every 50 us.
+  /// Handles bus events and refills the endpoints. The main loop calls poll() at least every 50 us.
   void poll();
 
   bool configured() const { return configuration_ != 0; }
@@ -64,10 +64,10 @@ class Device final : private ControlRequests {
   bool force_is_on() const;
   /// Returns true if the force is off and no queued command can switch the force on.
   bool may_store() const;
-  /// Returns true if a request with `claim` is permitted. Permitted are requests of the driver, and all requests while
-  /// there is no driver. Renews the claim of the driver, and counts refusals.
+  /// Returns true if a request with `claim` is permitted. Requests of the driver are permitted. All requests are
+  /// permitted while there is no driver. Renews the claim of the driver, and counts refusals.
   bool check_claim(std::uint32_t claim);
-  /// Like is_permitted(), but does not count refusals.
+  /// Returns the same result as is_permitted(), but does not count refusals.
   bool note_heard(std::uint32_t claim);
   bool driver_parity() const { return (link_.driver.changes() & 1u) != 0; }
   /// Call this function after the claim of a program has ended. Fades the force and the shapes of the former driver,

@@ -30,7 +30,7 @@ struct Event {
   alignas(4) std::array<std::byte, packet_size_maximum> data{};
 };
 
-/// Bus frame of 1 ms, timed by the host's clock. Cycles are counts of the processor's cycle counter.
+/// Bus frame of 1 ms, timed by the host's clock. Fields in cycles refer to the processor's cycle counter.
 struct BusFrame {
   std::uint16_t number = 0;         ///< 0..2047, from the start-of-frame packet
   std::uint32_t count = 0;          ///< bus frames since the port was started

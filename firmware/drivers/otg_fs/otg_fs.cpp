@@ -92,8 +92,9 @@ void OtgFs::follow_cable() {
   Device::DCTL::modify(Device::DCTL::SDIS(plugged ? 0 : 1));
 }
 
-// On a bus reset the core deactivates the endpoints (USBAEP). The endpoints stay enabled (EPENA), and old packets may
-// be in the receive FIFO. The function begin_receive() supports OUT endpoints that are enabled with NAK set.
+// On a bus reset the core deactivates the endpoints (USBAEP). After a bus reset, endpoints are still enabled (EPENA),
+// and old packets may be in the receive FIFO. The function begin_receive() supports OUT endpoints that are enabled with
+// NAK set.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
@@ -290,7 +291,8 @@ void OtgFs::begin_receive(unsigned endpoint) {
 
 bool OtgFs::cancel(std::uint8_t endpoint_address) { return stop_in(number_of(endpoint_address)); }
 
-// The caller has set NAK on every OUT endpoint. The function completes the transfers and discards their packets.
+// The caller has set NAK on every OUT endpoint. The function completes the OUT transfers and discards the received
+// packets.
 void OtgFs::empty_receive_fifo() {
   for (std::size_t i = 0; i < fifo_memory::receive_words && Core::GINTSTS::RXFLVL::is_set(); ++i)
     read_packet({}, Core::GRXSTSP::BCNT::read());
