@@ -1,7 +1,7 @@
 // Rows of a force law at the end of the parameter and signal tables.
 //
 // A firmware image contains one force law and the rows of this force law. A PC program reads the rows of the force law
-// from the device. Window, files and command line use the added rows like all other rows.
+// from the device. Window, files and command line use added rows in the same way as table rows.
 #pragma once
 
 #include <array>

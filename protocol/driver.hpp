@@ -60,8 +60,7 @@ struct DriverReport {
   std::uint32_t refused;       ///< requests since start-up from programs that were not the driver
 };
 
-/// Returns a digest that identifies a claim without disclosing the claim. A program therefore cannot use the claim of
-/// another program by mistake.
+/// Returns a digest that identifies a claim without disclosing the claim.
 constexpr std::uint32_t digest_of(std::uint32_t claim) {
   std::uint32_t mixed = claim ^ 0x9E3779B9u;
   mixed = (mixed ^ mixed >> 16) * 0x85EBCA6Bu;

@@ -61,7 +61,7 @@ constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
          a.group == b.group && a.belongs_to_arm == b.belongs_to_arm && a.needs_force_off == b.needs_force_off;
 }
 
-/// Returns the parameter of motor, joint or axis `axis` (0, 1 or 2). `rows` is the parameter with index 0.
+/// Returns the parameter of motor, joint or axis `axis` (0, 1 or 2). `rows` is the first of the three parameters.
 constexpr Parameter of_axis(EachAxis<Parameter> rows, std::size_t axis) { return rows[axis]; }
 /// Returns the parameter of motor, joint or axis `number` (1, 2 or 3, as in the row names).
 constexpr Parameter of_number(EachAxis<Parameter> rows, int number) {

@@ -91,8 +91,7 @@ constexpr std::size_t longest_report(ReportKind kind) {
   return longest;
 }
 
-/// Returns true if the device accepts a written report of `bytes` bytes. A report must contain its used part and may be
-/// padded.
+/// Returns true if the device accepts a written report of `bytes` bytes. A written report may be padded.
 constexpr bool is_accepted_length(const ReportInfo& row, std::size_t bytes) {
   return row.can_be_set() && bytes >= row.set_bytes_minimum && bytes <= longest_report(row.kind);
 }

@@ -37,8 +37,8 @@ namespace inkwell::protocol {
 
 static_assert(std::endian::native == std::endian::little, "the structures are transmitted in their memory layout");
 
-/// Number of protocol versions by which this build is ahead of the source tree. A test firmware sets this number
-/// (tests/target/next_protocol).
+/// Number of protocol versions by which this build is ahead of the source tree. The test firmware in
+/// tests/target/next_protocol sets INKWELL_PROTOCOL_VERSIONS_AHEAD.
 #ifndef INKWELL_PROTOCOL_VERSIONS_AHEAD
 #define INKWELL_PROTOCOL_VERSIONS_AHEAD 0
 #endif
@@ -46,7 +46,7 @@ static_assert(std::endian::native == std::endian::little, "the structures are tr
 /// Increase the protocol version when a report structure or the meaning of an id changes.
 inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
-/// Rate of the control interrupt and the scope. Every `time_periods` is a number of control periods.
+/// Rate of the control interrupt and the scope. Fields named `time_periods` are numbers of control periods.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
 /// Bus frames per second of the host's clock.
@@ -208,8 +208,8 @@ inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 /// Output report: the force of a program at the probe. A program sends at most one report per millisecond. The board
 /// interpolates linearly to the requested force within `interval_ms`. The parameters force_limit_N and
 /// program_force_change_N_per_s limit the force. The force fades if no report arrives for program_force_expiry_s. The
-/// device refuses and counts invalid reports. The device refuses reports with a pose older than
-/// force_pose_age_maximum_ms or without the driver's claim.
+/// device refuses and counts invalid reports. The device refuses a report if the pose is older than
+/// force_pose_age_maximum_ms or if the claim is not the driver's.
 struct ForceReport {
   ReportId report_id = ReportId::force;
   ForceMode mode;
@@ -314,8 +314,8 @@ struct TransactionReport {
   std::uint16_t reserved;
 };
 
-/// Feature report: start time of the newest bus frame on the board's clock. Two reports together show the ratio of the
-/// host clock to the board clock.
+/// Feature report: board time at the start of the newest bus frame. Two frame reports show the ratio of the host clock
+/// to the board clock.
 struct FrameReport {
   ReportId report_id = ReportId::frame;
   std::uint8_t is_known;  ///< 0: there is no bus frame, or its time is not known yet; then all further fields are 0

@@ -58,7 +58,7 @@ constexpr const SignalInfo& info(Signal signal) {
 constexpr std::size_t row_count(Signal) { return signal_count; }
 constexpr bool alike(const SignalInfo& a, const SignalInfo& b) { return a.unit == b.unit && a.wire == b.wire; }
 
-/// Returns the signal of motor, joint or axis `axis` (0, 1 or 2). `rows` is the signal with index 0.
+/// Returns the signal of motor, joint or axis `axis` (0, 1 or 2). `rows` is the first of the three signals.
 constexpr Signal of_axis(EachAxis<Signal> rows, std::size_t axis) { return rows[axis]; }
 /// Returns the signal of motor, joint or axis `number` (1, 2 or 3, as in the row names).
 constexpr Signal of_number(EachAxis<Signal> rows, int number) { return rows[static_cast<std::size_t>(number) - 1]; }
