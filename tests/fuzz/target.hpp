@@ -1,4 +1,4 @@
-// Each part of firmware and companion that reads external data has a fuzz target. A target is one function that accepts
+// Each parser of external data has a fuzz target. A target is one function that accepts
 // any bytes. A target may throw only the documented exceptions of its parser.
 #pragma once
 

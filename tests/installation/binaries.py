@@ -13,7 +13,7 @@ ET_EXEC, ET_DYN = 2, 3
 EM_ARM = 40
 FUNCTION_BEGIN = b"\xf3\x0f\x1e\xfa"  # endbr64: a valid target of an indirect call
 PROBES = (b"\x48\x83\x0c\x24\x00", b"\x48\xc7\x04\x24\x00\x00\x00\x00")  # stack probes of GCC and of Clang
-# The C library adds fewer than this number of functions with this instruction to a binary.
+# The C library alone adds fewer than 10 functions with `endbr64` to a binary.
 FUNCTIONS_LEAST = 10
 
 # Required properties of every binary, with their flags.
@@ -27,7 +27,7 @@ EVERYWHERE = {
 CHECKED_CALLS = "checked library calls"
 ASSERTIONS = "library assertions"
 STACK_PROBES = "stack probes"
-# A binary has these properties only if it contains matching code.
+# Only binaries with matching code have these properties.
 IN_SOME = {
     CHECKED_CALLS: "-D_FORTIFY_SOURCE=3",
     ASSERTIONS: "-D_GLIBCXX_ASSERTIONS",

@@ -1,4 +1,4 @@
-// Part of `inkwell` in sanitizer builds. At exit, LeakSanitizer searches the loaded libraries for pointers.
+// Sanitizer builds of `inkwell` contain this file. At exit, LeakSanitizer searches the loaded libraries for pointers.
 // LeakSanitizer reports leaks in an unloaded library, because it finds no pointers to the library's memory. This
 // dlclose() does not unload any library.
 

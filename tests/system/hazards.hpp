@@ -15,14 +15,14 @@ inline constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
 void reconnect(BoardRig& rig);
 
 bool any_leg_high(device::ControlClient& control);
-/// Checks the bridge inputs at 20 times within `time_s`. Returns true if any input was high.
+/// Checks the bridge inputs 20 times within `time_s`. Returns true if any input was high.
 bool any_leg_high_within(device::ControlClient& control, double time_s);
 bool bridges_enabled(device::ControlClient& control);
 
 /// The hand presses the sphere into a wall, so that all three bridges switch and at least one motor has current.
 void press_into_wall(BoardRig& rig);
 
-/// Count since power-on, without the watchdog test of firmware/application/watchdog_trial.hpp.
+/// Returns the number of restarts since power-on. The restart of the watchdog trial is not counted.
 int restarts(device::ControlClient& control);
 int watchdog_expires(device::ControlClient& control);
 

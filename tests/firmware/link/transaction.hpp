@@ -1,4 +1,4 @@
-// Builds ParametersReports as a host sends them, and flips bits of values.
+// Builds the ParametersReports of a host, and flips bits of values.
 #pragma once
 
 #include <array>

@@ -16,7 +16,7 @@ class NoCircuit final : public Circuit {
   void advance(Ticks) override {}
 };
 
-/// The name with `number` for its `#`, a letter from 'A' on.
+/// Replaces `#` in the name by the number, or by a letter if the numbers of the entry start at 'A'.
 std::string numbered(const MapEntry& entry, unsigned number) {
   std::string name = entry.name.data();
   const auto position = name.find('#');

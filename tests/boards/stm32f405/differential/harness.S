@@ -51,7 +51,7 @@ fill:
   str r4, [r5], #4
   subs r6, #1
   bne fill
-  // Half of the floats are near 1, the others have random bits.
+  // Half of the floats are near 1, and half have random bits.
   ldr r5, =state + 16 * 4
   movs r6, #16
 near_one:
@@ -173,7 +173,7 @@ random:
   eor r4, r4, r4, lsl #5
   bx lr
 
-// Changes all state that must be restored for a program: stacked registers, flags, IT state, FPU.
+// Changes the stacked registers, the flags, the IT state and the FPU. The return must restore these for the program.
 .thumb_func
 interrupt:
   ldr r0, =variables

@@ -1,4 +1,4 @@
-// Enables the clocks of all modeled peripherals. Their registers keep the reset values.
+// Enables the clocks of all modeled peripherals and does not write to the peripherals.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-// CAN1 in silent loop-back mode: sent frames pass its filters into its receive FIFOs.
+// CAN1 in silent loop-back mode receives the sent frames that pass the filters.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
-// Functions in RAM that are written, executed and overwritten: within one page, across a page boundary, and with other
-// instruction timing.
+// Writes functions to RAM, executes them and overwrites them. The functions are within one page, cross a page boundary,
+// or have different instruction timing.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {

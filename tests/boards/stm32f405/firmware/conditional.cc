@@ -10,8 +10,8 @@ void systick() {
   if (ticks + 1 != 0) ticks = ticks + 1;
 }
 
-/// The last instruction of the block is in the next memory page. The block is in a separate function, because its
-/// literals must be near.
+/// The last instruction of the block is in the next memory page. The block is in a separate function,
+/// because the literals must be near the block.
 [[gnu::naked, gnu::noinline]] std::uint32_t added_across_pages() {
   asm volatile(
       "movs r0, #0\n ldr r1, =%c0\n b 1f\n .ltorg\n .balign 4096\n .space 4084\n"
@@ -33,7 +33,7 @@ void run() {
       "itete eq\n addeq %0, #1\n addne %1, #1\n addeq.w %0, %0, #256\n addne.w %1, %1, #256\n"
       "ittt ne\n addne %1, #1\n addne %1, #1\n addne.w %1, %1, #512\n"
       "it eq\n addeq.w %0, %0, #4096\n"
-      // As in a library's multiplication: comparisons inside the block, and a call that is never executed.
+      // Like a library's multiplication, this block contains comparisons and a call that is never executed.
       "movs r3, #1\n ands r4, r3, #1\n"
       "ittte ne\n andsne r5, r3, #1\n teqne r4, #2\n teqne r5, #2\n bleq 2f\n"
       "subs %2, #1\n bne 1b\n b 3f\n"

@@ -1,4 +1,4 @@
-// Micro-programs whose cycle counts follow from the manuals, measured by the core's cycle counter. Each is measured
+// Measures short programs with the core's cycle counter. The cycle counts follow from the manuals. Each program runs
 // with 16 and with 48 repetitions, so that the overhead cancels.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
@@ -40,7 +40,7 @@ std::uint32_t time(void (*program)(std::uint32_t*), std::uint32_t* at = data) {
 #define DIFFERENCE_AT(name, at) (time(name##_48, at) - time(name##_16, at))
 #define DIFFERENCE(name) DIFFERENCE_AT(name, data)
 
-/// Loops over 1024 32-bit additions (256 flash lines), which exceed the cache, and over 32.
+/// The 1024 additions of the long loop (256 flash lines) exceed the cache. The 32 additions of the short loop do not.
 [[gnu::naked, gnu::noinline, gnu::aligned(16)]] void long_loop(std::uint32_t*) {
   asm volatile("movs r1, #3\n 1: .rept 1024\n add.w r2, r2, #1\n .endr\n subs r1, #1\n bne.w 1b\n bx lr\n" ::
                    : "memory");

@@ -1,4 +1,4 @@
-// Division by zero: result 0 without CCR.DIV_0_TRP, a UsageFault with it.
+// Division by zero returns 0, or raises a UsageFault if CCR.DIV_0_TRP is set.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-// A thread that masks SysTick half of the time, first with PRIMASK, then with BASEPRI, and records its progress.
+// The thread records its progress and masks SysTick half of the time, first with PRIMASK, then with BASEPRI.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {

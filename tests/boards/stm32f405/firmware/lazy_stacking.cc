@@ -1,5 +1,5 @@
-// FPCCR and FPCAR for the stack space that an exception reserves for floating-point registers. Each handler records
-// both registers.
+// An exception reserves stack space for floating-point registers. Each handler records FPCCR and FPCAR, which describe
+// this space.
 #include "tests/boards/stm32f405/firmware/protection.hpp"
 
 namespace {
@@ -23,7 +23,7 @@ extern "C" void note(std::uint32_t stack) {
 [[gnu::naked, gnu::noinline]] void call_with_floats() {
   asm volatile("push {r4, lr}\n vmov.f32 s0, #1.0\n svc #0\n mov r0, #0\n msr control, r0\n isb\n pop {r4, pc}");
 }
-/// The same in unprivileged mode on the process stack.
+/// Makes the call in unprivileged mode on the process stack.
 [[gnu::naked, gnu::noinline]] void call_as_user(std::uint32_t) {
   asm volatile(
       "push {r4, lr}\n msr psp, r0\n mov r0, #3\n msr control, r0\n isb\n vmov.f32 s0, #1.0\n svc #0\n"

@@ -1,5 +1,5 @@
-// Exception frames that the memory protection unit partly refuses: during stacking, unstacking and lazy stacking. The
-// CPU fault handler removes the cause.
+// The memory protection unit refuses parts of exception frames during stacking, unstacking and lazy stacking. The CPU
+// fault handler removes the cause.
 #include "tests/boards/stm32f405/firmware/protection.hpp"
 
 namespace {
@@ -38,8 +38,8 @@ extern "C" void mend_stack() {
 }
 std::uint32_t resume_at;
 
-// results[1], [2]: only the second half of the frame, in other 32 bytes, is refused. SVC follows the fault, on the
-// frame that was never written.
+// results[1], [2]: only the second half of the frame is refused. SVC follows the fault, on the frame that was never
+// written.
 void lose_frame() {
   constexpr std::uint32_t top = stack - 48;
   set_handler(11, [] {

@@ -60,8 +60,8 @@ void let_everybody_run() {
 volatile std::uint32_t* next = results + 1;
 void note(std::uint32_t value) { *next++ = value; }
 
-// results[1] to [11]: a page that is divided by regions, and a region without its third eighth. The region with the
-// higher number has priority.
+// results[1] to [11]: regions divide a page, and one region has a disabled third eighth. The region with the higher
+// number has priority.
 void probe_regions() {
   set_rights(0, 0x2001'0000, 12, read_only);
   set_region(1, 0x2001'0100, all << 24 | 1u << (8 + 2) | size(8) | normal);
@@ -152,7 +152,7 @@ void probe_masks() {
   note(verdict(store_word, 0x2001'0000));
   asm volatile("cpsie f" ::: "memory");
   note(verdict(store_word, 0x2001'0000));
-  // In HardFault: without a MemManage handler, and with one that cannot preempt.
+  // In HardFault, MemManage is first disabled, and then it cannot preempt.
   word(shcsr) = 6 << 16;
   mend = [] {
     word(0x2001'0000) = 0x600D;
@@ -170,8 +170,8 @@ void probe_masks() {
   take_regions_away();
 }
 
-// results[42] to [44]: device memory requires aligned accesses. Peripheral registers in a region of normal memory do
-// not.
+// results[42] to [44]: device memory requires aligned accesses. Peripheral registers in a region of normal memory
+// allow unaligned accesses.
 void probe_kinds() {
   set_rights(0, 0x2001'0000, 12, all, device);
   set_rights(1, 0x4002'0000, 12, all);

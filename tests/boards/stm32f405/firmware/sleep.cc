@@ -1,4 +1,4 @@
-// The sleep routine of the firmware, with an interrupt between its check for pending work and the sleep instruction.
+// An interrupt occurs between the firmware's check for pending work and its sleep instruction.
 // SysTick ends an erroneous sleep after at most one millisecond.
 #include "firmware/drivers/system.hpp"
 

@@ -1,4 +1,4 @@
-// The firmware's drivers of bridges and converters, with faults of the slow conversions in selected periods. One fault
+// Runs the firmware's drivers of bridges and converters, and disturbs slow conversions in selected periods. One fault
 // stops the stream during a sequence; the other sets a destination that the DMA controller cannot write.
 #include "firmware/drivers/analog_inputs.cpp"
 #include "firmware/drivers/bridges.cpp"

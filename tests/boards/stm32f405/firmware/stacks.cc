@@ -1,4 +1,4 @@
-// Exceptions on unusable stacks: one beyond the end of RAM, one that the memory protection unit refuses. The handlers
+// Raises exceptions with the stack beyond the end of RAM, and in memory that the protection unit refuses. The handlers
 // first switch to a valid stack.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
@@ -42,7 +42,7 @@ extern "C" void note_hard_fault() {
 [[gnu::naked]] void hard_fault() { asm volatile("ldr r1, =0x20018000\n mov sp, r1\n b note_hard_fault"); }
 
 void second() {
-  // 1 kB that only CPU fault handlers may write, because HFNMIENA is 0.
+  // Only CPU fault handlers may write to this 1 kB, because HFNMIENA is 0.
   word(mpu_base) = 0x20010000 | 1 << 4;
   word(mpu_attributes) = 6u << 24 | 9 << 1 | 1;
   word(mpu_control) = 1 | 1 << 2;

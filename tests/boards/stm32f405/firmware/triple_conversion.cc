@@ -1,4 +1,4 @@
-// Three simultaneous converters and one DMA stream that reads the common data register, in its three DMA modes.
+// Three converters run simultaneously. One DMA stream reads the common data register in each of the three DMA modes.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {

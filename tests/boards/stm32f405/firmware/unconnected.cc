@@ -1,4 +1,4 @@
-// Peripherals without external circuits: the events or errors that drivers wait for occur.
+// Without external circuits, the peripherals still report an event or an error to a waiting driver.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {

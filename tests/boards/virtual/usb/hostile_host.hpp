@@ -1,4 +1,4 @@
-// A host with protocol errors: transactions in any order, lost handshakes, repeated SETUP packets, resets at any time.
+// This host breaks the protocol: transactions in any order, lost handshakes, repeated SETUP packets, resets.
 // After each batch the device must enumerate and stream normally.
 #pragma once
 

@@ -57,7 +57,7 @@ struct FakeUsbDevice {
   }
 };
 
-/// Sets the answers that a session needs when it opens an arm.
+/// Sets the answers that a session needs to open an arm.
 void answer_as_inkwell(FakeUsbDevice& arm);
 
 /// If this environment variable is "windows", FakeUsb behaves like Windows; by default it behaves like Linux.

@@ -34,7 +34,7 @@ inline std::vector<std::byte> made_elf(const std::vector<firmware_update::Segmen
   return file;
 }
 
-/// Returns vectors with this identity, code in another sector, and a checksum.
+/// Returns an image with this identity and a valid checksum. The code is not in the sector of the vectors.
 inline std::vector<firmware_update::Segment> made_segments(const protocol::ImageIdentity& identity) {
   std::vector<firmware_update::Segment> segments{
       {protocol::image_begin, std::vector<std::byte>(firmware_update::identity_end + 2)},  // multiple of the word size
