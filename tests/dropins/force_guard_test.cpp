@@ -50,7 +50,7 @@ TEST_CASE("frames that see the same pose change the force together no more than 
   CHECK(length(course.step({3, 0, 0}).force_N) == doctest::Approx(1.0));
 }
 
-TEST_CASE("without clamping a force that is too large is dropped, told, and back by the ramp") {
+TEST_CASE("without clamping, a force above the limit is dropped with an error, and the next force ramps up") {
   Course course;
   course.limits_now.clamps = false;
   course.after(400, {1, 0, 0});

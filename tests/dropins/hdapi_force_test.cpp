@@ -58,7 +58,7 @@ TEST_CASE("a force pulls the hand, as much and where it says; a joint torque too
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
 }
 
-TEST_CASE("too much force is clamped, or told and dropped") {
+TEST_CASE("a force above the maximum is clamped, or is dropped with an error") {
   Held held;
   double maximum_N = 0;
   std::array<double, 3> sent_N{};
@@ -87,7 +87,7 @@ TEST_CASE("too much force is clamped, or told and dropped") {
   CHECK(sent_N[2] == 0.0);
 }
 
-TEST_CASE("a stylus that is too fast is told once, not at each frame") {
+TEST_CASE("a stylus that exceeds the velocity limit raises one error and not one error per frame") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));

@@ -101,7 +101,9 @@ TEST_CASE("both sonames lead to the one library") {
   CHECK(std::filesystem::canonical(libraries + "libHD.so") == std::filesystem::canonical(libraries + "libHD.so.3.4"));
 }
 
-TEST_CASE("two programs that both drive: the second is told of the first, and may when that is gone") {
+TEST_CASE(
+    "the second of two driving programs gets an error that names the first program, and can drive after the first "
+    "exits") {
   Board board;
   board.hold();
   const HHD before = hdInitDevice(nullptr);  // waits until the encoders are referenced
@@ -129,7 +131,7 @@ TEST_CASE("two programs that both drive: the second is told of the first, and ma
   hdDisableDevice(device);
 }
 
-TEST_CASE("a program that hangs loses its force by the board's own clock, and holds nobody up") {
+TEST_CASE("a stopped program loses its force after the expiry in board time, and other programs are not delayed") {
   Board board;
   const auto watcher = device::Device::open(*board.board.find());
   const auto next_pose = [&] {

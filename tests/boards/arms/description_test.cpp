@@ -119,7 +119,7 @@ TEST_CASE("an unknown key gets the nearest known one, its line and its section")
   CHECK_SAYS(complaint(omni_with("\n[parameters]\n", "\n[parameters]\nwall_stiffness_N_per_m = 3\n")), "has no key");
 }
 
-TEST_CASE("a wrong unit is told the right one") {
+TEST_CASE("the error for a wrong unit names the key with the correct unit") {
   CHECK_SAYS(complaint(omni_with("link_2_m = 0.13335", "link_2_mm = 133.35")), "lengths are in metres: link_2_m.");
   CHECK_SAYS(complaint(omni_with("elbow_minimum_rad = ", "elbow_minimum_deg = ")),
              "angles are in radians: elbow_minimum_rad.");

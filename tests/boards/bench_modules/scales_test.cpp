@@ -37,7 +37,8 @@ TEST_CASE("bench modules: 82 k over 10 k, 18 V are 2428 counts") {
 
 TEST_CASE("bench modules: the LED is between the supply and its pin") { CHECK(facts.status_led_shines_when_low); }
 
-TEST_CASE("bench modules: what stands at the pins for one ampere, for the supply and for a potentiometer") {
+TEST_CASE(
+    "bench modules: the pins have the expected voltages for the supply, the potentiometers and the motor currents") {
   test::DrivenPlant driven(test::omni(), {}, facts);
   CHECK(driven.read_V(facts.supply) == Approx(18.0 / 9.2).epsilon(0.01));
   for (const auto& wiper : facts.gimbal) CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // mid-scale

@@ -53,7 +53,7 @@ TEST_CASE("supply: 100 k over 10 k, 18 V are 2031 counts; 12 V to 24 V are allow
   CHECK(board::supply_maximum_V == 24.0f);
 }
 
-TEST_CASE("what stands at the pins for one ampere, for the supply and for a potentiometer") {
+TEST_CASE("the pins have the expected voltages for the supply, the potentiometers and the motor currents") {
   test::DrivenPlant driven(test::omni());
   CHECK(driven.read_V(board::omni_driver.supply) == Approx(18.0 / 11.0).epsilon(0.01));
   for (const auto& wiper : board::omni_driver.gimbal)

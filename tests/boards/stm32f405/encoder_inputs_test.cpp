@@ -132,7 +132,8 @@ TEST_SUITE("virtual chip: encoder inputs") {
     CHECK(encoder.count() == 2);
   }
 
-  TEST_CASE("what no sample sees does not count, and what one sees does, without a filter too") {
+  TEST_CASE(
+      "without a filter, a timer counts slow edges and misses edges that are closer together than its clock period") {
     // Without a filter, the timer misses edges that are closer together than its clock period.
     Encoder slow, fast;
     slow.turn(2000, timer_clock);

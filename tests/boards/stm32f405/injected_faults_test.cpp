@@ -18,7 +18,7 @@ std::uint32_t find_in_flash(const Chip& chip, std::uint16_t content) {
   return 0;
 }
 
-TEST_CASE("an exception comes as late as it was told to, in each period, and in time again") {
+TEST_CASE("an exception is late by the injected delay in each period until the delay is cleared") {
   for (const Mode mode : {Mode::exact, Mode::fast}) {
     CAPTURE(static_cast<int>(mode));
     ChipUnderTest test("converters", mode);
@@ -94,7 +94,7 @@ TEST_CASE("a DMA that takes no request moves nothing, and goes on when it may") 
   CHECK(test.result(6) == filled);
 }
 
-TEST_CASE("a bit of RAM turns over and back; where there is no memory there is none to turn") {
+TEST_CASE("flip_bit inverts a RAM bit at each call and returns false for an address without memory") {
   ChipUnderTest test("converters");
   test.run_for(0.003);
   constexpr std::uint32_t address = 0x2001'EF02;

@@ -61,7 +61,7 @@ TEST_SUITE("virtual chip: memory protection") {
     }
   }
 
-  TEST_CASE("a region that the manual leaves open is told") {
+  TEST_CASE("a protection region with attributes that the manual leaves undefined breaks a rule") {
     for (unsigned number = 0; number < 8; ++number) {
       CAPTURE(number);
       ChipUnderTest test("reserved_regions");

@@ -266,7 +266,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
   }
 
-  TEST_CASE("interleaved converters sample one pin in turns, until nobody takes their results") {
+  TEST_CASE("interleaved converters sample one pin in turns until an overrun stops them") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("interleaved", mode);

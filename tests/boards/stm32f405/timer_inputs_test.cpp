@@ -170,7 +170,7 @@ TEST_SUITE("virtual chip: timer inputs") {
     CHECK(inputs.read(tim3 + cnt) == 4);
   }
 
-  TEST_CASE("ETF: a pulse that is shorter than the filter is none") {
+  TEST_CASE("ETF: the trigger filter ignores a pulse that is shorter than the filter time and counts a longer pulse") {
     Inputs inputs;
     constexpr unsigned eight_samples = 3;
     inputs.write(tim3 + smcr, ece | eight_samples << 8);

@@ -172,6 +172,6 @@ TEST_SUITE("virtual chip: rules of silicon") {
     SUBCASE("a byte that is written to a register of an APB is repeated") {
       CHECK(Planted(25).test.result(6) == 0x0303);
     }
-    SUBCASE("what LOCK protects stays") { CHECK(Planted(21).test.result(4) == 0); }
+    SUBCASE("a register that LOCK protects does not change") { CHECK(Planted(21).test.result(4) == 0); }
   }
 }

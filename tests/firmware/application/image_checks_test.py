@@ -102,7 +102,7 @@ class ImageChecks(unittest.TestCase):
         check_image, _ = self.check("[[gnu::noipa]] void other() { sink = 1; }\nvoid work() { sink = 2; other(); }")
         self.assert_refused(check_image, "which lies outside .interrupt_text")  # a tail call also counts as a call
 
-    def test_what_reads_the_flash_in_an_interrupt_is_found(self):
+    def test_an_interrupt_that_reads_the_flash_is_refused(self):
         reads = "work runs in an interrupt and reads the flash: its tables belong into .interrupt_tables"
         check_image, _ = self.check("const int table[16] = {7, 1, 8};\nvoid work() { sink = table[sink & 15]; }")
         self.assert_refused(check_image, reads)

@@ -32,7 +32,8 @@ TEST_CASE("offsets of the current sensors are taken off, and a broken sensor is 
   CHECK(broken.fault() == Fault::current_sensor);
 }
 
-TEST_CASE("a current sensor that drifts off zero while the bridges are off is told, in every state without a force") {
+TEST_CASE(
+    "a current sensor whose offset drifts while the bridges are off raises a fault in every state without a force") {
   const Settings settings = settings_near_wall();
   constexpr float drift_A = control::CurrentOffsets::plausible_A;
   for (Controller controller : {tests::started_controller(settings), tests::ready_controller(settings)}) {
@@ -59,8 +60,8 @@ TEST_CASE("a current sensor that drifts off zero while the bridges are off is to
 }
 
 TEST_CASE(
-    "what a sensor read before the force was on is not counted on when it goes, nor what it read before it was "
-    "measured") {
+    "readings from before a force period or before the offset measurement do not count towards a current sensor "
+    "fault") {
   const Settings settings = settings_near_wall();
   constexpr std::uint32_t patience_periods = control::CurrentOffsets::patience_periods;
   Controller controller = tests::ready_controller(settings);

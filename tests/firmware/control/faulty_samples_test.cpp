@@ -20,7 +20,7 @@ struct BadSample {
   std::uint32_t periods;
 };
 
-TEST_CASE("what the samples can show wrong switches the bridges off with the right fault") {
+TEST_CASE("each bad sample switches the bridges off and raises the matching fault") {
   const BadSample cases[] = {
       {Fault::bridge_fault, [](Samples& s) { s.bridge_fault = true; }, 1},
       {Fault::over_current, [](Samples& s) { s.current_A[2] = -3.8f; }, 1},
@@ -56,7 +56,7 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
   }
 }
 
-TEST_CASE("a supply that dips or rises for a control period, but not far, is borne") {
+TEST_CASE("a supply reading slightly outside its limits for one control period raises no fault") {
   for (const float reading_V : {6.1f, 26.3f}) {
     CAPTURE(reading_V);
     const Settings settings = settings_near_wall();
@@ -82,7 +82,9 @@ Fault fault_at(const Settings& settings, const control::Triple& at_stops_rad) {
   return controller.fault();
 }
 
-TEST_CASE("a joint beyond its stop is told, the elbow by its angle between the links, and none within") {
+TEST_CASE(
+    "a joint raises encoder_implausible beyond its stops and not within them, and joints 2 and 3 can reach the same "
+    "end together") {
   constexpr float beyond_rad = 0.01f;
   for (const tests::Arm& arm : tests::all_arms()) {
     CAPTURE(arm.name);

@@ -24,7 +24,7 @@ Controller controller_in_pulses(const Settings& settings) {
   return controller;
 }
 
-TEST_CASE("while the self-test's pulses run their current is borne by any motor, a larger one is not") {
+TEST_CASE("during self-test pulses, the over-current limit of a motor is the maximum pulse current") {
   Settings settings = plain_settings();
   settings.limits.over_current_A[1] = 0.5f;
   for (const float current_A : {1.0f, 1.1f}) {

@@ -223,7 +223,7 @@ TEST_CASE("a force limit that is raised over walls and a program together lets t
   CHECK(arm.force_N().z == doctest::Approx(3.0f).epsilon(1e-3));
 }
 
-TEST_CASE("what holds the force back is told") {
+TEST_CASE("each limit that reduces the force is reported") {
   StillArm arm;
   CHECK(arm.controller.limits() == 0);
   const auto limits_with = [&](Parameter parameter, float value) {
@@ -249,7 +249,8 @@ TEST_CASE("what holds the force back is told") {
   CHECK(free.controller.limits() == 0);
 }
 
-TEST_CASE("a program that asks for more than the force limit is told so, whatever the direction and the rhythm") {
+TEST_CASE(
+    "a program that requests more than the force limit sees this limit, for every direction and report interval") {
   StillArm arm;
   int told = 0;
   const std::uint32_t rhythms[] = {17, 20, 23};
@@ -337,7 +338,7 @@ TEST_CASE("a program moves nothing while the force is off, and is ramped in with
   CHECK(controller.signals()[Signal::force_x_N] == doctest::Approx(2.0f * 20 / 5000).scale(0).epsilon(2e-4));
 }
 
-TEST_CASE("what is left of a jump is forgotten when the force goes off") {
+TEST_CASE("when the force is switched off, the remainder of a force jump is discarded") {
   StillArm arm;
   const control::Shapes shapes = arm.floor(0.002f);
   arm.controller.replace_shapes(shapes);

@@ -66,7 +66,7 @@ TEST_CASE("the force rises, is there, is held back and free again, without a per
   CHECK(controller.state() == State::ready);
 }
 
-TEST_CASE("in an orderly end the force falls as softly as it is told, and only then the bridges go off") {
+TEST_CASE("after disable_force, the force falls to zero within soft_landing_s, and then the bridges switch off") {
   protocol::ParameterSet set = parameters();
   constexpr int landing_periods = 400;
   set[soft_landing_s] = landing_periods * protocol::servo_period_s;
@@ -114,7 +114,7 @@ TEST_CASE("in an orderly end the force falls as softly as it is told, and only t
   }
 }
 
-TEST_CASE("while the force rises a limit is not told") {
+TEST_CASE("while the force rises, a reached limit does not change the state") {
   const Settings pushed = held_back();
   Controller controller = tests::active_controller(pushed);
   tests::run(controller, tests::samples_at_rest(), pushed, ramp_periods / 2);

@@ -12,7 +12,8 @@ using namespace inkwell::virtual_board;
 using namespace inkwell::virtual_board::test;
 
 TEST_SUITE("virtual board: debugger") {
-  TEST_CASE("symbols name functions, and are silent where there are none") {
+  TEST_CASE(
+      "a symbol table returns the function and offset of a code address, and an empty name for any other address") {
     const Symbols symbols{firmware_path("lock_up")};
     ChipUnderTest test("lock_up");
     const std::uint32_t reset = test.chip.memory_word(0x0800'0004) & ~1u;

@@ -33,7 +33,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK_FALSE(packets.take());
   }
 
-  TEST_CASE("what would end or begin a packet is escaped, both ways") {
+  TEST_CASE("packet control characters in a payload are escaped when sent and restored when received") {
     const std::string payload = "a#b$c}d*e";
     GdbPackets packets;
     packets.feed(gdb_packet(payload));

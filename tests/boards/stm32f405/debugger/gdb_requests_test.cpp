@@ -26,7 +26,7 @@ Asked asked_by(std::string_view packet) {
 }  // namespace
 
 TEST_SUITE("virtual board: debugger") {
-  TEST_CASE("what is malformed is an error, and never reaches the chip") {
+  TEST_CASE("a malformed packet is answered with an error and never reaches the chip") {
     for (const char* packet : {"p22",
                                "pg",
                                "p",
@@ -54,7 +54,7 @@ TEST_SUITE("virtual board: debugger") {
     }
   }
 
-  TEST_CASE("what is not known is answered by nothing, by which GDB asks for it in another way") {
+  TEST_CASE("an unknown packet gets an empty answer, so that GDB uses a different packet") {
     for (const char* packet : {"", "!", "Z5,20000000,4", "c20000000", "s20000000", "vMustReplyEmpty", "vCont;",
                                "vCont;t", "qXfer:memory-map:read::0,40", "QNonStop:1"}) {
       CAPTURE(packet);
@@ -62,7 +62,7 @@ TEST_SUITE("virtual board: debugger") {
     }
   }
 
-  TEST_CASE("what is asked is understood up to its bounds") {
+  TEST_CASE("a valid request is parsed, up to the largest register numbers and lengths") {
     CHECK(asked_by<ReadRegister>("p21").number == 33);
     const auto set = asked_by<WriteRegister>("P11=0123456789abcdef");
     CHECK(set.number == first_double);

@@ -28,7 +28,7 @@ constexpr std::uint16_t load_r0_from_r4 = 0x6820, load_r1_from_r5 = 0x6829, load
 constexpr std::uint16_t load_r1_from_r0 = 0x6801, store_r1_to_r5 = 0x6029, store_r2_to_r6 = 0x6032;
 constexpr std::uint16_t store_r1_to_r5_r6 = 0x51A9;
 
-TEST_CASE("what computes in the integer pipeline takes a cycle each") {
+TEST_CASE("each addition or multiplication of integers takes one cycle") {
   CHECK(cycles({add_r0, add_r1, nop}) == 3);
   CHECK(cycles({0x4348}) == 1);          // muls r0, r1, r0
   CHECK(cycles({0xFBA0, 0x1202}) == 1);  // umull r1, r2, r0, r2

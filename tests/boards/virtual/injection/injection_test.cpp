@@ -56,7 +56,7 @@ TEST_CASE("a fault is written with its position, amount, time and duration") {
   CHECK(parse_injection("leg_high:2B", board::omni_driver).number == 1);
 }
 
-TEST_CASE("a wire goes by its pin or by what it is used for, which is how it is told") {
+TEST_CASE("a wire is selected by its pin or its function, and is named after its function if there is one") {
   CHECK(parse_injection("wire_open:PB4", board::omni_driver).of == "encoders[1].a");
   CHECK(parse_injection("wire_open:PB4", board::omni_driver).wires[0] == PinName{'B', 4});
   CHECK(parse_injection("wire_low:bridge_enable", board::omni_driver).wires[0] == PinName{'B', 1});
@@ -75,7 +75,7 @@ TEST_CASE("memory goes by its address, or by the seed") {
   CHECK(parse_injection("flash_bit", board::omni_driver).amount == -1.0);
 }
 
-TEST_CASE("what is no fault is refused with a sentence that says what would be one") {
+TEST_CASE("an invalid fault is refused with a sentence that states the mistake or the valid values") {
   CHECK(refuses("encoder_stick:1", "there is no fault \"encoder_stick\"; use one of these: wire_open, "));
   CHECK(refuses("", "there is no fault \"\""));
   CHECK(refuses("encoder_stuck", "encoder_stuck needs a location; add the motor: 1, 2 or 3"));

@@ -93,7 +93,7 @@ TEST_CASE("every fault of the table is injected and reported with its position u
   }
 }
 
-TEST_CASE("each fault has a number of its own, from when it is asked for until it is healed") {
+TEST_CASE("each injected fault has a unique number, both while it is planned and while it is active") {
   Rig rig;
   const unsigned now = rig.injector.add(parse_injection("encoder_slip:2", board::omni_driver));
   const unsigned again = rig.injector.add(parse_injection("encoder_slip:2", board::omni_driver));
@@ -168,7 +168,7 @@ TEST_CASE("wires") {
   CHECK(rig.level(fault_wire) == PinLevel::high);
 }
 
-TEST_CASE("spikes come as often as they were told to, and no more once they are healed") {
+TEST_CASE("spikes have the requested rate and stop after the fault is healed") {
   Rig rig;
   unsigned rises = 0;
   rig.chip.watch_pins([&](char port, unsigned pin, PinLevel level, Ticks) {

@@ -116,7 +116,7 @@ TEST_CASE("a stiff, undamped hand does not blow up") {
   }
 }
 
-TEST_CASE("the stops bear the falling arm, the elbow's one between the links") {
+TEST_CASE("the stops limit each joint of a falling arm, and the elbow stop limits the angle between the links") {
   for (const auto& description : test::all_arms()) {
     CAPTURE(description.name);
     using protocol::Parameter;

@@ -46,7 +46,7 @@ TEST_CASE("the plant's meter tells the force and the work of motors on a hand th
   CHECK(reading.energy_J > 0.9 * 0.5 * 2000.0 * stretched_m * stretched_m);
 }
 
-TEST_CASE("it is told until when a bridge could drive its motor") {
+TEST_CASE("the truth contains the last time at which a bridge could drive its motor") {
   DrivenPlant driven(test::omni());
   driven.run(0.001, {0.5, 0.5, 0.5});
   CHECK(driven.plant.truth(driven.now).driven_until == 0);  // not enabled

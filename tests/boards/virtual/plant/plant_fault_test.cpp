@@ -65,7 +65,7 @@ TEST_CASE("an encoder's disc that stands shows no edge, and its counts stay lost
   CHECK(swinging.driven.inputs.jumps == 0);
 }
 
-TEST_CASE("an encoder loses the share of its counts that it was told to") {
+TEST_CASE("an encoder loses the requested share of its counts") {
   Swinging swinging;
   swinging.driven.plant.encoder_fault(0).lose(0.2);
   swinging.driven.idle(0.07);

@@ -19,7 +19,7 @@ std::string refusal_of(const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("a command is known by its name, with keys of its own") {
+TEST_CASE("a request selects a command by name and accepts only the keys of this command") {
   const Request request = read_request(R"({"command": "run", "for_s": 0.5})");
   CHECK(request.info->command == Command::run);
   CHECK(run_time_s(request.values) == 0.5);
@@ -43,7 +43,7 @@ TEST_CASE("every command is in the table once, and in the help") {
   }
 }
 
-TEST_CASE("what is beyond its bounds is refused, and what is missing") {
+TEST_CASE("a missing required value and a value outside its bounds are refused") {
   using nlohmann::json;
   CHECK(message_of<Refused>([] {
           run_time_s(json{{"for_s", -1}});

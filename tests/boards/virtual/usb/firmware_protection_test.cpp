@@ -142,7 +142,7 @@ protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<con
 
 }  // namespace
 
-TEST_CASE("what only an error does with the memory is a fault, and the board says where") {
+TEST_CASE("each invalid memory access or jump raises a CPU fault with its program counter") {
   const FirmwareOnBus bus(flashed_image());
   const std::uint32_t load = address_of(bus, load_by_r0), store = address_of(bus, store_by_r0);
   REQUIRE(load != 0);
@@ -238,7 +238,7 @@ TEST_CASE("of link register and stack the first eight words that lie behind a ca
       bus, code, [](std::uint16_t last, std::uint16_t before) { return is_blx(last) && !is_bl(last, before); });
   REQUIRE(later != by_address);
 
-  SUBCASE("what looks like one") {
+  SUBCASE("words that are not return addresses are ignored") {
     const std::uint32_t only_first_half = address_after(bus, code, [](std::uint16_t last, std::uint16_t before) {
       return is_first_half_of_bl(before) && !is_call(last, before);
     });

@@ -113,7 +113,7 @@ TEST_CASE("when the power comes the watchdog is left to bite, and the self-test 
   }
 }
 
-TEST_CASE("what the trial of the watchdog showed is told after other resets too, without another trial") {
+TEST_CASE("the result of the watchdog test is reported again after another reset without a second watchdog reset") {
   OtherBoard other({});
   other.bus.connect();
   const float expired_after_ms = other.watchdog_entry().figure;

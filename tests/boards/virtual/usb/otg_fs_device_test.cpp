@@ -184,7 +184,9 @@ TEST_CASE("back-to-back SETUP packets all arrive, four exceed the count") {
   }
 }
 
-TEST_CASE("NAK that is cleared upon a SETUP that nobody could have seen loses the setup-done word, and is no fault") {
+TEST_CASE(
+    "clearing NAK after a SETUP packet loses the setup-done word, and breaks a rule only if the firmware could see the "
+    "packet") {
   const auto clear_nak = [](bool sees, double time_since_look_us) {
     CoreBench bench;
     bench.read(gintsts);
@@ -508,7 +510,7 @@ TEST_CASE("TXFE follows the level that GAHBCFG chooses") {
   CHECK(empty());
 }
 
-TEST_CASE("what the manual forbids is said and has its consequence") {
+TEST_CASE("each access that the manual forbids is reported and has its consequence") {
   CoreBench bench;
   bench.activate();
   SUBCASE("another access within a packet's FIFO writes") {
@@ -558,7 +560,7 @@ TEST_CASE("what the manual forbids is said and has its consequence") {
     bench.write(0x940, bench.read(0x940) | epena | cnak);
     CHECK(bench.log.has("overlap"));
   }
-  SUBCASE("a FIFO that nobody has laid out before its endpoint was opened") {
+  SUBCASE("the firmware enables an endpoint before it configures the FIFO of the endpoint") {
     bench.write(0x950, 1u << 19);
     bench.write(0x940, bench.read(0x940) | epena | cnak);
     CHECK(bench.log.sentences.empty());

@@ -68,7 +68,7 @@ TEST_CASE("each report reaches every program that asks, and the first alone rese
   board.call([&] { CHECK(board.log.sentences.empty()); });
 }
 
-TEST_CASE("numbers of transfers are each program's own, and a request that is taken back is nobody else's") {
+TEST_CASE("each program has separate transfer numbers, and an unlinked request affects no other program") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   Program first(board), second(board);
@@ -169,7 +169,7 @@ TEST_CASE("a program that takes no more reports is waited for, but not for ever 
   CHECK(stopped.read_report() == 94);
 }
 
-TEST_CASE("unplugged, every program is told, and all may come back") {
+TEST_CASE("unplugging the device disconnects all programs, and all programs can connect again") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   {

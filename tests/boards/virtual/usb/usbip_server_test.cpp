@@ -262,7 +262,7 @@ TEST_CASE("while the simulation is paused, lists and imports are answered and tr
   CHECK(client.read_reply().header.sequence == 40);
 }
 
-TEST_CASE("isochronous transfers, which are not modelled, come back as errors and cost nobody the connection") {
+TEST_CASE("isochronous transfers are not modeled and return errors, and the connection stays open") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
@@ -376,7 +376,7 @@ TEST_CASE("who imports right after a client died with transfers under way is ser
   }
 }
 
-TEST_CASE("clients that do nothing lock nobody out, and do not cost the importer its connection") {
+TEST_CASE("idle clients do not prevent another client from connecting, and the importer stays connected") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient importer(board.usb.port());

@@ -179,12 +179,12 @@ TEST_CASE("where a motor reaches its limit all give way together") {
     CHECK(control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.2f, 0.0f, 0.0f}).reference_A[1] == 0.0f);
     CHECK_FALSE(control::current_references({}, motors, {0.2f, 0.0f, 0.0f}).held_by_heat);
   }
-  SUBCASE("a hot one whose limit does not fall, because it bears it for ever: its own limit") {
+  SUBCASE("a hot motor with a current limit below its continuous current reports the current limit") {
     const auto references = control::current_references({1.0f, 3.0f, 0.1f}, motors, {0.0f, 0.1f, 0.0f});
     CHECK(references.held_by_current);
     CHECK_FALSE(references.held_by_heat);
   }
-  SUBCASE("a hot one and one at its own limit: both are told") {
+  SUBCASE("a hot motor and a motor at its current limit report both limits") {
     const auto references = control::current_references({1.0f, 0.5f, 0.5f}, motors, {0.05f, 0.0f, 0.0f});
     CHECK(references.held_by_heat);
     CHECK(references.held_by_current);

@@ -53,7 +53,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("what is a jump goes by the finest encoder: 100 rad/s of its joint at least, and 16 counts at least") {
+TEST_CASE("the jump limit of the encoders is at least 16 counts and at least 100 rad/s for every joint") {
   using enum protocol::Parameter;
   protocol::ParameterSet set = tests::omni_parameters();
   CHECK(control::prepare(set).encoders.jump_counts == 16);

@@ -21,7 +21,7 @@ using tests::TurningArm;
 
 constexpr control::EnergyLimits limits{.reserve_J = 0.04f, .refill_J_per_period = 5e-5f, .low_reserves_per_J = 100.0f};
 
-TEST_CASE("what the force gave on the probe's way is taken out, and what the hand gave is put in") {
+TEST_CASE("the energy reserve falls by the work of the force on the probe and rises by the work of the hand") {
   EnergyReserve reserve{0.02f, {0.1f, 0.0f, 0.0f}};
   reserve.update({2.0f, 1.0f, 0.0f}, {0.101f, 0.0f, 0.0f}, limits);
   CHECK(reserve.left_J == doctest::Approx(0.02f - 0.002f + 5e-5f));

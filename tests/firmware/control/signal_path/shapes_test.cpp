@@ -157,7 +157,7 @@ TEST_CASE("a plane lets go where it is left, and holds where it is touched again
   }
 }
 
-TEST_CASE("each shape ends when its life does, and that is told once") {
+TEST_CASE("each shape ends after its life, and the end is reported once") {
   Shapes shapes;
   put_floor(shapes, 0, 0.0f, smooth, 3);
   put_floor(shapes, 4, 0.0f, smooth, 5);

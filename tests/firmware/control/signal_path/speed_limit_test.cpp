@@ -54,7 +54,7 @@ struct FastArm : TurningArm {
   float at_fast_N = 0.0f, at_slow_N = 0.0f;
 };
 
-TEST_CASE("a program that drives an arm which is nearly too fast drives it no more, and that is told") {
+TEST_CASE("near the speed limit, a program can no longer drive the arm, and the limit is reported") {
   const FastArm unbounded(10.0f, 2.0f);
   CHECK_FALSE(unbounded.reached(Limit::speed));
   const float limit_m_per_s = unbounded.fastest_m_per_s * 1.03f;

@@ -47,7 +47,7 @@ TEST_CASE("reciprocals by Newton's method") {
   CHECK(worst_root < 3e-7);
 }
 
-TEST_CASE("what is not finite is told apart") {
+TEST_CASE("is_finite returns true for finite numbers and false for infinities and NaN") {
   using limits = std::numeric_limits<float>;
   CHECK(is_finite(0.0f));
   CHECK(is_finite(limits::max()));
