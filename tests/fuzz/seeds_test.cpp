@@ -6,7 +6,7 @@
 
 using namespace inkwell;
 
-TEST_CASE("every target bears its seeds, nothing, and each seed cut short anywhere") {
+TEST_CASE("every fuzz target accepts empty input, its seeds and truncated seeds without an exception") {
   CHECK(fuzz::targets().size() > 10);
   for (const fuzz::Target& target : fuzz::targets()) {
     CAPTURE(target.name);

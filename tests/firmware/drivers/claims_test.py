@@ -83,7 +83,7 @@ class Claims(unittest.TestCase):
                 self.assert_refused(self.compile(f"{FREE_PIN}, {claim}"), TAKEN,
                                     f"Disjoint<inkwell::drivers::{owner}, Newcomer>")
 
-    def test_what_is_not_claimed_cannot_be_used(self):
+    def test_a_driver_cannot_use_unclaimed_hardware(self):
         for start in ("RegistersOf<Newcomer, registers::TIM3>::CNT::read();",
                       "RegistersOfStream<Newcomer, registers::DMA2, 1>::LISR::read();",
                       "start_clocks_of<Newcomer, registers::TIM3>();",

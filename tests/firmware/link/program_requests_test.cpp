@@ -61,7 +61,7 @@ TEST_CASE("a sound force is ready for the interrupt once") {
   CHECK(requests.forces_refused() == 0);
 }
 
-TEST_CASE("what is no force is refused, counted and reaches nobody") {
+TEST_CASE("an invalid force report is counted as refused and is never returned by take_force") {
   const auto broken = [](auto change) {
     ForceReport report = force(1);
     change(report);
@@ -98,7 +98,7 @@ TEST_CASE("a huge force stays finite in its square and keeps its direction") {
   CHECK(target->force_N.x / target->force_N.y == doctest::Approx(-2.0f));
 }
 
-TEST_CASE("gaps in the sequence are counted as lost, another program's start is none") {
+TEST_CASE("a gap in the sequence numbers counts as lost forces, and the start of another program does not") {
   link::ProgramRequests requests;
   const auto accept = [&](std::uint32_t sequence) {
     requests.accept_force(bytes(force(sequence)), true, 0);

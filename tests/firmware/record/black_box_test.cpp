@@ -262,7 +262,7 @@ TEST_CASE("a run that crashed leaves its last rows, and what the processor noted
   CHECK(board.periods() == Periods{920, 940, 960, 980, 1000});
 }
 
-TEST_CASE("crashes while a black box is kept: the newest is told, with their number, and the signals stay") {
+TEST_CASE("each crash while a black box is retained updates the crash facts and the crash count, but not the signals") {
   const auto check = [](Board& board, Fault first_fault, const Periods& first_periods) {
     for (std::uint32_t crashes = 1; crashes <= 2; ++crashes) {
       protocol::CrashFacts newest = crash;
@@ -291,7 +291,7 @@ TEST_CASE("crashes while a black box is kept: the newest is told, with their num
   check(with_crash, Fault::processor_fault, {920, 940, 960, 980, 1000});
 }
 
-TEST_CASE("a crash before anything was recorded is told without rows") {
+TEST_CASE("a crash before the first recorded row is reported without rows") {
   Board board;
   board.start(Fault::processor_fault, crash);
   board.run(200, State::fault, Fault::processor_fault);

@@ -193,7 +193,7 @@ TEST_CASE("a narrow value beyond its range saturates") {
   CHECK(seen[4] == lowest);
 }
 
-TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but never one that is being sent") {
+TEST_CASE("without a reader, the recorder drops and counts the oldest frames, but never the frame that is being sent") {
   link::Link& fresh = test::fresh_link();
   link::ScopeRecorder& scope = fresh.scope;
   const SignalSelection selection = select(14);

@@ -114,7 +114,7 @@ class CheckRegisters(unittest.TestCase):
         self.assertIn("LAMP.STATUS: the SVD has no such register", self.planted("struct SR", "struct STATUS"))
         self.assertIn("no peripheral LANTERN", self.planted("using LAMP2 = registers", "using LANTERN = registers"))
 
-    def test_what_the_compiler_does_not_write_down_is_refused(self):
+    def test_an_invalid_register_declaration_is_refused(self):
         for right, wrong, said in (
             ("template struct Lamp<0x40002000>;", "", "LAMP2 is not instantiated"),
             ("using ON = Field<CR, 0, 1>", "using ON = int", "CR.ON is not a Field"),
@@ -137,7 +137,7 @@ class CheckRegisters(unittest.TestCase):
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
         self.assertIn("chip LAMP2.CR.COLOUR is at bit 4, 2 wide; in the SVD at bit 4, 3 wide", result.stdout)
 
-    def test_what_one_of_a_kind_lacks_must_be_in_another(self):
+    def test_each_field_must_exist_in_at_least_one_peripheral_of_a_kind(self):
         result = self.run_tool(None, [lamp("LAMP", 0x40001000), lamp("LAMP3", 0x40003000)])
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         result = self.run_tool(None, [lamp("LAMP3", 0x40003000)])
@@ -145,7 +145,7 @@ class CheckRegisters(unittest.TestCase):
         self.assertIn("no field COLOUR", result.stdout)
         self.assertIn("chip LAMP3.SR: the SVD has no such register", result.stdout)
 
-    def test_what_is_not_as_promised_is_refused(self):
+    def test_an_invalid_input_file_is_refused(self):
         for svd in ("", "<device/>"):
             result = self.run_tool(None, svd=svd)
             self.assertEqual(result.returncode, 2, result.stdout)

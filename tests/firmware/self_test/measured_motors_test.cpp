@@ -62,7 +62,8 @@ struct PushedBoard : test::SelfTestBoard {
   }
 };
 
-TEST_CASE("what a bridge takes is known from the test, so half a motor's turns are missed at a usual force") {
+TEST_CASE(
+    "a halved winding resistance is detected at a usual current only after the self-test has measured the motors") {
   for (const bool is_tested : {true, false}) {
     CAPTURE(is_tested);
     PushedBoard board;

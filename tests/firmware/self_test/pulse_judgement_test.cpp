@@ -127,7 +127,7 @@ TEST_CASE("a resistance is kept if the motor rests and both signs agree") {
   }
 }
 
-TEST_CASE("half its turns, half or double the gain of its sensor, an open motor: each is told by the motor's item") {
+TEST_CASE("a half-shorted winding, a wrong sensor gain or an open motor fails the self-test item of the motor") {
   const auto failed = [](const PulseJudgement& judgement) {
     CHECK(judgement.bridges[1].result == SelfTestResult::not_done);
     return judgement.motors[1].result == SelfTestResult::failed;
@@ -148,7 +148,7 @@ TEST_CASE("half its turns, half or double the gain of its sensor, an open motor:
   CHECK(failed(with_second([](auto& motor) { motor.sensor_gain = -1.0f; })));
 }
 
-TEST_CASE("a motor that goes well in one direction only is told") {
+TEST_CASE("a motor with the right current in only one direction fails its self-test item") {
   Bench bench;
   // If a back EMF cancels the current of one direction, a half bridge appears not to conduct.
   bench.simulated.motors[0].back_emf_V = 2.0f;
@@ -157,7 +157,7 @@ TEST_CASE("a motor that goes well in one direction only is told") {
   CHECK(bench.judgement().motors[0].result == SelfTestResult::failed);
 }
 
-TEST_CASE("a leg that is half a microsecond slow is told by the bridge's item, and no force is lost by it") {
+TEST_CASE("a doubled dead time fails the bridge item of the self-test, and this item does not disable the force") {
   const auto judgement = with_second([](auto& motor) { motor.dead_V *= 2.0f; });
   CHECK(judgement.motors[1].result == SelfTestResult::passed);
   CHECK(judgement.bridges[1].result == SelfTestResult::failed);
@@ -182,7 +182,7 @@ TEST_CASE("a bridge that seems to give a little, by errors of its sensor, takes 
   CHECK(judgement.bridge_loss_part[1] == 0.0f);
 }
 
-TEST_CASE("swapped current wires, and two that touch, are told by the wires' item") {
+TEST_CASE("swapped current wires fail the wires item of the self-test") {
   Bench swapped;
   std::swap(swapped.simulated.motors[0].sensor, swapped.simulated.motors[2].sensor);
   const auto found = swapped.judgement();
@@ -192,7 +192,7 @@ TEST_CASE("swapped current wires, and two that touch, are told by the wires' ite
   CHECK(found.wires.figure == doctest::Approx(0.67).epsilon(0.05));
 }
 
-TEST_CASE("of several wires that fail the largest current is told") {
+TEST_CASE("if several current wires fail, the wires item reports the largest current") {
   Bench swapped;
   std::swap(swapped.simulated.motors[0].sensor, swapped.simulated.motors[1].sensor);
   swapped.simulated.motors[1].resistance_ohm *= 1.3f;
@@ -201,7 +201,7 @@ TEST_CASE("of several wires that fail the largest current is told") {
   CHECK(found.wires.figure == doctest::Approx(0.67).epsilon(0.05));
 }
 
-TEST_CASE("with the arm in motion a failure is none yet; the direction does not matter") {
+TEST_CASE("while the arm moves in either direction, a failure is reported as moved and not as failed") {
   for (const float counts_per_period : {0.2f, -0.2f}) {
     Bench bench;
     bench.simulated.motors[0].is_open = true;

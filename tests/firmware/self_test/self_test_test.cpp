@@ -64,7 +64,7 @@ TEST_CASE("on command it tests anew, from unreferenced and ready, and comes back
   CHECK(protocol::force_is_on(board.controller.state()));
 }
 
-TEST_CASE("what fails takes the force away, is believed the second time, and goes only by a test that passes") {
+TEST_CASE("a repeated failure raises self_test_failed, and only a test that passes clears this fault") {
   Board board;
   board.motors.motors[1].is_open = true;
   board.run_while(State::starting);
@@ -91,7 +91,7 @@ TEST_CASE("what fails takes the force away, is believed the second time, and goe
   CHECK(board.result(SelfTestItem::motor_2) == SelfTestResult::passed);
 }
 
-TEST_CASE("a failure that is gone in the next round is none") {
+TEST_CASE("a failure that does not repeat in the next round is ignored") {
   Board board;
   board.motors.motors[0].is_open = true;
   board.run_while(State::starting);
@@ -144,7 +144,7 @@ TEST_CASE("a fast arm gets no pulses, because bridges that are on would brake it
   }
 }
 
-TEST_CASE("each wire that follows its pulls every time is told; one that does so by chance is not") {
+TEST_CASE("a wire fails its item if it follows the pull in every reading, and passes if one reading differs") {
   for (std::size_t item = static_cast<std::size_t>(SelfTestItem::encoder_1_a);
        item <= static_cast<std::size_t>(SelfTestItem::bridge_fault_tim8); ++item) {
     CAPTURE(protocol::self_test_item_table[item].name);
@@ -163,7 +163,7 @@ TEST_CASE("each wire that follows its pulls every time is told; one that does so
   CHECK(board.controller.state() == State::unreferenced);
 }
 
-TEST_CASE("a wiper at an end of its track is told, and takes no force away") {
+TEST_CASE("a gimbal potentiometer at an end of its track fails its item but raises no fault") {
   for (const float ratio : {0.0f, 0.005f, 0.995f, 1.0f}) {
     Board board;
     board.samples.gimbal_ratio[1] = ratio;
@@ -176,7 +176,7 @@ TEST_CASE("a wiper at an end of its track is told, and takes no force away") {
   }
 }
 
-TEST_CASE("what start-up has found counts: RAM or a watchdog that fails takes the force away at each test") {
+TEST_CASE("a RAM or watchdog failure at start-up fails its self-test item and raises self_test_failed") {
   for (const SelfTestItem item : {SelfTestItem::ram, SelfTestItem::watchdog}) {
     Board board;
     board.link.self_test.note(item, false);
@@ -189,7 +189,7 @@ TEST_CASE("what start-up has found counts: RAM or a watchdog that fails takes th
   }
 }
 
-TEST_CASE("a reference that is off takes the force away, and its voltage is told") {
+TEST_CASE("a wrong analog supply raises self_test_failed, and its voltage is reported") {
   Board board;
   board.analog_supply_V = 3.0f;
   board.analog_supply_is_right = false;
@@ -223,7 +223,7 @@ TEST_CASE("without a supply there are no pulses, the items say so, and the test 
   CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::passed);
 }
 
-TEST_CASE("a current sensor that is off zero is told by its item as well, although there is no test then") {
+TEST_CASE("a current sensor fault also fails the item current_offsets, although the motors are not tested") {
   Board board;
   for (int i = 0; i < 2'100; ++i) {
     board.motors.motors[1].current_A = 3.0f;
@@ -259,7 +259,7 @@ TEST_CASE("the offsets of the current sensors are those of now, not of the start
   CHECK(board.controller.state() == State::fault);
 }
 
-TEST_CASE("memory that is told to be damaged fails its item, whatever the look at the start gave") {
+TEST_CASE("damaged memory fails its self-test item, although the item passed at start-up") {
   Board board;
   board.link.self_test.note(SelfTestItem::flash, true);
   board.run_while(State::starting);
@@ -302,7 +302,7 @@ TEST_CASE("a test that is broken off has no results of the one before") {
   CHECK(board.result(SelfTestItem::encoder_1_a) == SelfTestResult::passed);
 }
 
-TEST_CASE("an order of a test that a fault has ended is none of the next one") {
+TEST_CASE("after a fault aborts a self-test, its pulse order does not start pulses in the next self-test") {
   Board board;
   board.run_while(State::starting);
   while (!board.link.self_test.wanted_wire()) board.run(1);

@@ -154,7 +154,7 @@ TEST_CASE("each refusal tells its reason and leaves everything as it was") {
     transaction.report().operation = static_cast<protocol::ParameterOperation>(3);
     check_refused(store, transaction.bytes(), Refusal::unknown_operation);
   }
-  SUBCASE("what is stored, where nothing is") {
+  SUBCASE("a restore without stored parameters is refused") {
     Transaction transaction{};
     transaction.report().operation = protocol::ParameterOperation::restore_stored;
     check_refused(store, transaction.bytes(), Refusal::nothing_stored);
@@ -298,7 +298,7 @@ TEST_CASE("nothing is made of damaged values, and nothing hides them, be it a tr
   CHECK(store.accept(transaction.bytes(), false) == Refusal::accepted);
 }
 
-TEST_CASE("what is stored is restored, unless a bit of it has changed by itself") {
+TEST_CASE("stored parameters are restored unless one of their bits has flipped") {
   ParameterStore store;
   protocol::ParameterSet set = protocol::default_parameters();
   set[Parameter::force_limit_N] = 1.5f;

@@ -381,7 +381,7 @@ TEST_CASE(
   CHECK(Board(flash).report().out_of_range == 0);
 }
 
-TEST_CASE("stored parameters: records of another schema or kind are told, and give the defaults") {
+TEST_CASE("stored parameters: a record with another schema or kind is reported, and the defaults apply") {
   for (const bool other_schema : {true, false}) {
     PlainFlash flash;
     RecordHead head = valid_head();
@@ -424,7 +424,7 @@ TEST_CASE("stored parameters: where there is no room nothing changes, and the ne
   CHECK(Board(flash).held(force_limit) == 2.0f);
 }
 
-TEST_CASE("stored parameters: a worn flash is told, and what was stored still holds") {
+TEST_CASE("stored parameters: a worn flash is reported, and the last stored values remain valid") {
   PlainFlash flash;
   store_in(flash, force_limit, 1.25f);
   Board board(flash);

@@ -175,7 +175,7 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   CHECK(report.motor_heat[2] == 1.5f);
 }
 
-TEST_CASE("HID: parameters are read, set as a transaction and its result is told") {
+TEST_CASE("HID: the host reads parameters, sets them in a transaction and reads the result") {
   DeviceBench bench;
   bench.configure();
   const test::Transaction transaction{test::entry(protocol::Parameter::wall_stiffness_N_per_m, 321.0f),

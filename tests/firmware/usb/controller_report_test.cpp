@@ -29,7 +29,7 @@ TEST_CASE("the controller counts hundredths of a millimetre and tenths of a mill
   CHECK(report.angle[2] == 0);
 }
 
-TEST_CASE("what is beyond the range, or no number, stays within it") {
+TEST_CASE("positions outside the range of the report, infinities and NaN become limits of the range") {
   auto pose = example_pose();
   pose.position_m[0] = 1.0f;
   pose.position_m[1] = -std::numeric_limits<float>::infinity();

@@ -64,7 +64,7 @@ struct FullQueue : test::DeviceBench {
 
 }  // namespace
 
-TEST_CASE("while no command can be queued the host is told to wait, and none is lost") {
+TEST_CASE("while the command queue is full, commands are answered with NAK, and no command is lost") {
   FullQueue bench;
   bench.check_nothing_was_lost();
 }

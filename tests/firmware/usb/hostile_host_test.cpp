@@ -209,7 +209,7 @@ TEST_CASE("a request that goes to the host with wLength 0, or to the device with
   check_alive(bench);
 }
 
-TEST_CASE("packets that nobody asked for are not taken") {
+TEST_CASE("unexpected packets are answered with NAK") {
   DeviceBench bench;
   CHECK(bench.port.out(0, {}) == Handshake::nak);
   CHECK(bench.port.out(1, {}) == Handshake::nak);  // not configured

@@ -68,7 +68,7 @@ TEST_CASE("the reading of the reference gives VDDA") {
   CHECK(supply.analog_supply_V(0) == 0.0f);
 }
 
-TEST_CASE("twelve wrong looks in a row are borne, and a right one makes up for all before it") {
+TEST_CASE("twelve wrong readings in a row raise no fault, and one right reading resets the count") {
   const std::uint16_t right = counts_of(1.21f, nominal_V), wrong = counts_of(1.21f, 3.0f);
   AnalogSupply supply = analog_supply(right);
   for (int i = 0; i < 10; ++i) {

@@ -48,13 +48,13 @@ TEST_CASE(
             {.on = true, .enable_is_high = true, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
 }
 
-TEST_CASE("bridges that are held on while they should be off are told; while they should be on, elsewhere") {
+TEST_CASE("a high hold pin is a short only while the bridges should be off") {
   CHECK(readings_until_shorted({.on = false, .hold_is_high = true}) == 2);
   CHECK(readings_until_shorted({.on = true, .enable_is_high = true, .hold_is_high = true}) == 0);
   CHECK(readings_until_shorted({.on = true, .enable_is_high = true, .hold_is_high = false}) == 0);
 }
 
-TEST_CASE("one wrong look is borne, and a right one makes up for all before it") {
+TEST_CASE("a single wrong reading raises no fault, and a correct reading resets the count") {
   constexpr BridgePins healthy{}, wrong{.enable_is_high = true};
   BridgeWire wire;
   for (int i = 0; i < 100; ++i) {

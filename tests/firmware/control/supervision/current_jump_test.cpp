@@ -100,7 +100,7 @@ TEST_CASE("a motor that comes open takes the force away in the period in which i
   }
 }
 
-TEST_CASE("a sensor whose gain halves or doubles at 0.7 A is told in the period in which it is read") {
+TEST_CASE("a current sensor whose gain halves or doubles at 0.7 A raises current_jump in the first period") {
   for (const std::size_t motor : {std::size_t{0}, std::size_t{2}})  // the current of the second motor is lower here
     for (const float gain : {0.5f, 2.0f}) {
       CAPTURE(motor);

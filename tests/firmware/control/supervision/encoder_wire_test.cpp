@@ -69,7 +69,7 @@ TEST_CASE("an edge that is crossed to and fro 500 times a second is no dead wire
   CHECK(periods_until_dead(dithering(650.0f)) < periods_in(0.1f));
 }
 
-TEST_CASE("a buzz of more than one count is none, however fast, nor is one that goes by two") {
+TEST_CASE("an oscillation by two or more counts does not indicate a dead encoder wire, at any rate") {
   const auto buzz = [](float amplitude_counts, float rate_Hz) {
     return [=](float time_s) {
       return static_cast<std::uint16_t>(

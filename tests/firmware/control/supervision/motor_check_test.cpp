@@ -64,7 +64,7 @@ TEST_CASE("a motor at rest without current may have the bearable voltage, and wh
   }
 }
 
-TEST_CASE("what a bridge takes at least is missed in a voltage that is too small for a current with one sign") {
+TEST_CASE("the lower voltage bound includes the smallest bridge loss if the current keeps its sign") {
   constexpr BridgeLoss loss{0.4f, 0.5f};
   for (const float sign : {1.0f, -1.0f}) {
     // R i is 2 V, and R may be up to 28 % too high.
@@ -121,7 +121,7 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
   }
 }
 
-TEST_CASE("what is beyond is summed, so the larger it is the sooner it is noticed") {
+TEST_CASE("the motor check sums the excess voltage, so that a larger excess raises a fault sooner") {
   // The voltage exceeds the tolerance by 4 V, and the check runs every three periods.
   const float voltage_V = 4.0f + MotorCheck::tolerance_V;
   const float flux_of_check_Vs = 4.0f * 3.0f * protocol::servo_period_s;
@@ -130,7 +130,7 @@ TEST_CASE("what is beyond is summed, so the larger it is the sooner it is notice
   CHECK(checks_until_fault(0, 16.0f, 0.0f, 0.0f) == 2);
 }
 
-TEST_CASE("a current that turns round from one limit to the other in no time is borne, and forgotten") {
+TEST_CASE("repeated sudden current reversals between both limits never raise a fault") {
   MotorCheck motor_check;
   const Triple still{};
   const auto check = [&](float voltage_V, float current_A) {
@@ -279,7 +279,7 @@ TEST_CASE("at the force limit a reading that tells too little makes no more curr
     }
 }
 
-TEST_CASE("what a test has measured is known at once, also where the force comes on with the next period") {
+TEST_CASE("the values of a self-test apply even if the force is switched on three periods later") {
   for (const int idle_periods : {0, 100, 200, 300}) {  // the heat model is updated every 384 periods
     CAPTURE(idle_periods);
     PressedArm arm;

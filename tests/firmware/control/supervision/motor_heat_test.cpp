@@ -106,7 +106,7 @@ TEST_CASE("a hot motor may carry less: its limit when cool, its continuous curre
   CHECK(hottest < 1.1f);
 }
 
-TEST_CASE("a motor that grows hot all the same is told until it has cooled") {
+TEST_CASE("a motor that overheats despite its limit is reported as too hot until it has cooled") {
   const control::HeatScale quick = scale(0.1f);
   MotorHeat motors;
   run(motors, {0.0f, 0.0f, 1.1f * continuous_A}, quick, 1.0f);

@@ -54,7 +54,7 @@ TEST_CASE("an encoder that stands while the current changes by thrice as much as
   CHECK(is_detected(stationary, rising(0.3f, -2.76f)));
 }
 
-TEST_CASE("pressed, let go and pressed again: two changes are borne, whichever way, the third is not") {
+TEST_CASE("two large current changes do not detect a stuck encoder, and the third change does, in either direction") {
   CHECK_FALSE(is_detected(stationary, through(std::array{0.0f, 1.2f})));
   CHECK_FALSE(is_detected(stationary, through(std::array{0.0f, 1.2f, 0.0f})));
   CHECK(is_detected(stationary, through(std::array{0.0f, 1.2f, 0.0f, 1.2f})));
@@ -62,7 +62,7 @@ TEST_CASE("pressed, let go and pressed again: two changes are borne, whichever w
   CHECK_FALSE(is_detected(stationary, through(std::array{0.0f, 0.9f, 0.0f, 0.9f, 0.0f})));
 }
 
-TEST_CASE("what changed before it came to stand does not count") {
+TEST_CASE("current changes before the last encoder movement do not count towards a stuck encoder") {
   // The current rises from 0 to 5.8 A, and the encoder moves by two counts in the middle of the rise.
   const auto stepping = [](float time_s) { return time_s < 0.45f ? 100 : 102; };
   CHECK(is_detected(stationary, rising(0.0f, 5.8f)));
@@ -71,7 +71,7 @@ TEST_CASE("what changed before it came to stand does not count") {
   CHECK_FALSE(is_detected(back, rising(0.0f, 5.8f)));
 }
 
-TEST_CASE("what changed up to the look in which a joint breaks loose does not count for where it stands next") {
+TEST_CASE("the current change that moves a joint does not count towards a stuck encoder at the new angle") {
   // The joint moves during the first current change and is stationary during two later changes.
   const auto current_A = [](int reading) {
     if (reading >= 3'500) return reading < 5'000 ? 0.0f : 0.8f;
@@ -130,8 +130,7 @@ TEST_CASE("while the arm is held by anything nothing counts, and what was before
   reading(2.5f, false);
 }
 
-TEST_CASE(
-    "what moves a joint is one and a half newtons at the end of the longer link, by the motor's constant and gear") {
+TEST_CASE("moving_A of each motor produces 1.5 N at the end of the longer link") {
   using enum protocol::Parameter;
   protocol::ParameterSet set = tests::omni_parameters();
   set[link_3_m] = 0.2f;

@@ -55,7 +55,7 @@ TEST_CASE("the way from power-up to force") {
   CHECK(next(State::active, good | events(Event::risen)) == State::active);
 }
 
-TEST_CASE("a limit is told once the force has risen, for as long as it holds") {
+TEST_CASE("the state is limited only after the force has risen, and only while a limit is reached") {
   CHECK(next(State::ramping, good | events(Event::held_back)) == State::ramping);
   CHECK(next(State::active, good | events(Event::risen, Event::held_back)) == State::limited);
   CHECK(next(State::limited, good | events(Event::risen, Event::held_back)) == State::limited);

@@ -43,7 +43,9 @@ TEST_CASE("a swing of more than a volt at 100 Hz is ripple within a twentieth of
   CHECK(periods_until_ripple(swing(0.95f, 100.0f)) == never);
 }
 
-TEST_CASE("from 40 Hz on a swing is ripple within a tenth of a second, below 33 Hz it is none") {
+TEST_CASE(
+    "a supply oscillation at 40 Hz or more is ripple within 0.12 s, and an oscillation at 33 Hz or less is not "
+    "ripple") {
   for (const float rate_Hz : {40.0f, 50.0f, 120.0f, 300.0f, 1000.0f}) {
     CAPTURE(rate_Hz);
     CHECK(periods_until_ripple(swing(2.0f, rate_Hz)) < periods_in(0.12f));

@@ -54,7 +54,7 @@ TEST_CASE("without an image the text has the addresses, the registers and how to
   CHECK(without_stack.find("--elf") == std::string::npos);
 }
 
-TEST_CASE("what is no ELF for the board is refused") {
+TEST_CASE("a file that is not an ELF image of the board is refused") {
   CHECK_THROWS_WITH_AS(FirmwareImage("/nowhere/inkwell.elf"),
                        "Cannot read /nowhere/inkwell.elf: No such file or directory. Check its name.", device::Error);
   CHECK_THROWS_AS(FirmwareImage("/proc/self/exe"), device::Error);

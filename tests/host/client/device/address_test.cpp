@@ -67,7 +67,7 @@ TEST_CASE("a virtual board has options") {
   }
 }
 
-TEST_CASE("what is no address is told with one that is") {
+TEST_CASE("the error for an invalid address contains a valid address") {
   for (const auto wrong :
        {"usbip:", "usbip:nowhere", "usbip:host:", "usbip:host:0", "usbip:host:65536", "usbip:host:3x"}) {
     CAPTURE(wrong);

@@ -106,7 +106,7 @@ TEST_CASE("every row of a black box comes once, in the order of time") {
   }
 }
 
-TEST_CASE("a program that asks without end for other rows is told of, not waited for") {
+TEST_CASE("if another program repeatedly requests other rows, black_box_rows raises an error instead of waiting") {
   Kept kept = full();
   kept.asked_between = 1'000'000;
   auto device = device_with(kept);

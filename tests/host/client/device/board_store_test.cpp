@@ -38,7 +38,7 @@ std::size_t not_stored_by(const device::Session& session) {
 
 }  // namespace
 
-TEST_CASE("what is held is stored, told from what is not, restored and forgotten") {
+TEST_CASE("parameters can be stored, compared with the stored values, restored and erased") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   CHECK(not_stored(arm->parameters(), read_store(*arm)).empty());
@@ -56,7 +56,7 @@ TEST_CASE("what is held is stored, told from what is not, restored and forgotten
   CHECK(arm->stored_parameters() == protocol::default_parameters());
 }
 
-TEST_CASE("what the board refuses to store is told with its meaning and remedy") {
+TEST_CASE("a refused store command raises an error with its meaning and remedy") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   for (const auto result : {StoreResult::force_is_on, StoreResult::no_room, StoreResult::flash_failed}) {
@@ -132,7 +132,7 @@ TEST_CASE("a session stores what was set just before, and forgets it") {
   CHECK(session.status().store->at_next_start == protocol::default_parameters());
 }
 
-TEST_CASE("why a session could not store is told until another request") {
+TEST_CASE("a session reports a store problem until the next store request") {
   FakeUsbipServer server;
   std::atomic<bool> is_refused = true;
   server.judge_store = [&](Command) { return is_refused ? StoreResult::force_is_on : StoreResult::done; };
@@ -148,7 +148,7 @@ TEST_CASE("why a session could not store is told until another request") {
   REQUIRE(eventually([&] { return session.status().store->report.records_written == 1; }));
 }
 
-TEST_CASE("what another program stores is noticed after a second of the device's time") {
+TEST_CASE("a session notices after one second of device time that another program changed the stored parameters") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   REQUIRE(eventually([&] { return is_connected(session); }));

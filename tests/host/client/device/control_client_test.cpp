@@ -62,7 +62,7 @@ TEST_CASE("a refusal leaves the connection as it was; no answer in time is anoth
   CHECK(contains(message_of<device::Error>([&] { client.reset(); }), "does not answer"));
 }
 
-TEST_CASE("what is in a board and what is still to come are taken from its status") {
+TEST_CASE("the active and the planned faults are read from the status of the board") {
   const std::string line =
       R"({"ok": true, "board_time_s": 2.5, "control_period": {"number": 40000, "board_time_s": 2.25}, "injected": [)"
       R"({"number": 1, "fault": "motor_open", "of": "2", "since_s": 1.5, "until_s": 3.5}], "still_to_come": [)"
@@ -82,7 +82,7 @@ TEST_CASE("what is in a board and what is still to come are taken from its statu
   CHECK(contains(message_of<device::Error>([&] { client_of(older).injections(); }), "its injected faults"));
 }
 
-TEST_CASE("what answers but is no virtual board is told so") {
+TEST_CASE("an answer from a server that is not a virtual board raises an error") {
   for (const auto line : {"HTTP/1.1 400 Bad Request", "{}", "[]", R"({"ok": 1})"})
     CHECK(contains(failure_at(line), "is not a virtual board"));
 }

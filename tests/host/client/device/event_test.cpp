@@ -21,7 +21,7 @@ device::Pose pose(std::uint32_t time_periods, State state, Fault fault = Fault::
 
 }  // namespace
 
-TEST_CASE("force and faults are told once, when they come and when they go") {
+TEST_CASE("the force and each fault produce one event when they begin and one event when they end") {
   CHECK(events_between({}, pose(10, State::ready), {}).empty());
   CHECK(events_between(pose(10, State::ready), pose(30, State::ready), {}).empty());
 
@@ -46,7 +46,7 @@ TEST_CASE("force and faults are told once, when they come and when they go") {
   CHECK(over[0].text == "supply_low was cleared.");
 }
 
-TEST_CASE("a change of parameters is told with the value before") {
+TEST_CASE("the event of a parameter change contains the previous value") {
   const auto before = protocol::default_parameters();
   auto now = before;
   now[Parameter::wall_stiffness_N_per_m] = 600.0f;

@@ -23,7 +23,7 @@ TEST_CASE("the supply's faults name the limits at which the firmware switches of
   CHECK(device::fault_text(Fault::current_sensor).remedy.find("the 1.65 V reference") != std::string::npos);
 }
 
-TEST_CASE("the faults of ripple and of the reference name what is borne") {
+TEST_CASE("the texts of supply_ripple and analog_supply state the tolerated deviation") {
   CHECK(device::fault_text(Fault::supply_ripple).cause ==
         "The ripple of the bridge supply repeatedly exceeds 1 V in either direction.");
   CHECK(device::fault_text(Fault::analog_supply).cause.find("differs by more than 5 % from 3.3 V") !=

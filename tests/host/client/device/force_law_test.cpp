@@ -82,7 +82,7 @@ TEST_CASE("a description that ends too early, or counts more than there can be, 
   CHECK_THROWS_AS(device::parse_force_law(many), device::Error);
 }
 
-TEST_CASE("rows join the tables, and another law's only when nobody uses them any more") {
+TEST_CASE("join_tables adds the rows of a law and refuses another law while the first law exists") {
   const std::size_t parameters = protocol::parameter_count, signals = protocol::signal_count;
   auto law = device::parse_force_law(report_of("first"));
   REQUIRE(device::join_tables(law));
@@ -121,7 +121,7 @@ TEST_CASE("a law replaces a law that no device uses") {
   CHECK(device::joined_force_law() == "other");
 }
 
-TEST_CASE("after a law that nobody uses any more, one without rows has the tables as they are") {
+TEST_CASE("a law without rows removes the rows of a law that is no longer in use") {
   const auto& installed = control::installed_force_law;
   CHECK(device::join_tables(device::parse_force_law(std::span(installed.report, installed.report_size))));
   CHECK(protocol::known_parameters().size() == protocol::parameter_count);

@@ -55,7 +55,7 @@ std::string board_time_line(double board_time_s) {
 
 }  // namespace
 
-TEST_CASE("an arm at a server is opened, and its endpoint has the serial number that it told") {
+TEST_CASE("open_arm connects to a server and returns an endpoint with the serial number of the arm") {
   FakeUsbipServer server;
   const auto opened = device::open_arm(device::parse_address("usbip:" + std::to_string(server.port())), {});
   CHECK(opened.endpoint.serial_number == "0123456789ABCDEF01234567");
@@ -64,7 +64,7 @@ TEST_CASE("an arm at a server is opened, and its endpoint has the serial number 
   CHECK(server.transactions() == 0);
 }
 
-TEST_CASE("a board of its own gets the parameters of its arm") {
+TEST_CASE("a virtual board that open_arm starts gets the parameters of its arm description") {
   FakeUsbipServer usb;
   FakeControlServer control([](const json&) { return board_time_line(0.0); });
   const StandIn board(usb.port(), control.port());

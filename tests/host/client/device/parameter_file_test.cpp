@@ -49,7 +49,7 @@ TEST_CASE("names that this version does not know are returned, not refused") {
   CHECK(file.unknown[0] == "magic_N");
 }
 
-TEST_CASE("what a file of parameters names is safe to print") {
+TEST_CASE("terminal control characters in unknown names and error messages become question marks") {
   const auto file = device::parse_parameters("[parameters]\n\"wobble\\u001B[2J\" = 3\n", "a.toml");
   CHECK(file.unknown == std::vector<std::string>{"wobble?[2J"});
   CHECK(std::string(device::Error("one\n\ttwo\x1B[2J\x07").what()) == "one\n\ttwo?[2J?");
@@ -94,7 +94,7 @@ TEST_CASE("a file that can not be written whole, or not renamed, leaves the old 
   CHECK(contains(save("folder"), "cannot be replaced"));
 }
 
-TEST_CASE("what is no file of bytes is refused, not waited for") {
+TEST_CASE("a named pipe is refused as a parameter file without waiting") {
   const TemporaryDirectory directory;
   REQUIRE(mkfifo(directory.file("pipe").c_str(), 0600) == 0);
   const int held_open = open(directory.file("pipe").c_str(), O_RDWR | O_CLOEXEC);

@@ -69,7 +69,7 @@ device::ScopeDecoder decoder_for(const std::vector<Signal>& signals) {
 
 }  // namespace
 
-TEST_CASE("a frame of an earlier program is none, though its token is the same; the counter may wrap meanwhile") {
+TEST_CASE("the decoder ignores a frame from before its start, even with the same token and a wrapped counter") {
   for (const std::uint32_t begin : {1'000u, 5u}) {
     CAPTURE(begin);
     device::ScopeDecoder decoder;
