@@ -56,7 +56,7 @@ class Packages(unittest.TestCase):
                 self.assertEqual([], [line for line in lines if line[0] not in
                                       ("drwxr-xr-x", "-rw-r--r--", "lrwxrwxrwx") and "/bin/" not in line[5]])
 
-    def test_what_they_are_and_need(self):
+    def test_packages_have_the_right_sections_and_dependencies(self):
         def field(name: str, key: str) -> str:
             return run("dpkg-deb", "-f", package(name), key).strip()
 
@@ -72,7 +72,7 @@ class Packages(unittest.TestCase):
         self.assertEqual(("science", "libdevel", "science"),
                          tuple(field(name, "Section") for name in ("inkwell", "inkwell-dev", "inkwell-lab")))
 
-    def test_what_the_system_is_told(self):
+    def test_packages_register_the_library_with_the_system(self):
         control = content("inkwell") / "DEBIAN"
         self.assertEqual(f"libinkwell 1 inkwell (>= {VERSION})\n", (control / "shlibs").read_text())
         self.assertEqual("activate-noawait ldconfig\n", (control / "triggers").read_text())
@@ -94,7 +94,7 @@ class Packages(unittest.TestCase):
                     [row] = [binary for binary in BINARIES if binary.kind and re.fullmatch(binary.kind, installed)]
                     self.assertEqual([], missing(path, row) + unsafe_folders(path))
 
-    def test_only_the_virtual_board_is_linked_to_unicorn_and_its_licence_is_told(self):
+    def test_only_the_virtual_board_is_linked_to_unicorn_and_its_license_is_stated(self):
         folder = content("inkwell")
         linked = [path.name for path in [*folder.rglob("*"), *content("inkwell-lab").rglob("*")]
                   if path.is_file() and not path.is_symlink() and path.read_bytes()[:4] == b"\x7fELF"

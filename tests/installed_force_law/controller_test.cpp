@@ -52,7 +52,7 @@ struct LawRig {
   float force_z_N() const { return controller.signals().values[static_cast<std::size_t>(Signal::force_x_N) + 2]; }
 };
 
-TEST_CASE("the law is told the periods since it is felt, from zero, and again from zero after a rest") {
+TEST_CASE("the period count of a law starts at zero and restarts at zero after a reset") {
   control::FeltForceLaw law;
   control::Probe probe;
   for (int round = 0; round < 2; ++round) {
@@ -81,7 +81,7 @@ TEST_CASE("a law is felt while the force is on, and begins anew each time that i
   CHECK(rig.law_periods() == 4.0f);
 }
 
-TEST_CASE("a law is told which switches are closed, debounced") {
+TEST_CASE("a law receives the debounced states of the switches") {
   LawRig rig;
   rig.run(1);
   CHECK(rig.law_switches() == 0.0f);

@@ -272,7 +272,7 @@ TEST_CASE("a servo may end itself, answer with no number, or be closed under way
   CHECK(information.force_reports_refused == 0);
 }
 
-TEST_CASE("forces without a servo: felt while they are renewed, bounded, refused if they are none") {
+TEST_CASE("without a servo, forces last while they are renewed, are bounded, and are refused if not finite") {
   VirtualArm virtual_arm;
   virtual_arm.make_active();
   REQUIRE(inkwell_set_force_mode(virtual_arm.arm, INKWELL_BESIDE_WALLS) == INKWELL_OK);
@@ -293,7 +293,7 @@ TEST_CASE("forces without a servo: felt while they are renewed, bounded, refused
   CHECK(inkwell_set_force_mode(virtual_arm.arm, static_cast<inkwell_force_mode>(7)) == INKWELL_BAD_ARGUMENT);
 }
 
-TEST_CASE("a limit that holds the force back is told while it does") {
+TEST_CASE("a limit is reported in the pose while it reduces the force") {
   VirtualArm virtual_arm;
   virtual_arm.make_active();
   const auto push_until = [&](double force_N, auto condition) {
@@ -420,7 +420,7 @@ TEST_CASE("two arms at once") {
   CHECK_MESSAGE(inkwell_set_force(right.arm, force_N) == INKWELL_OK, std::string(inkwell_error_text()));
 }
 
-TEST_CASE("what is wrong is said in a sentence, and nothing is touched") {
+TEST_CASE("each invalid call returns an error code with a sentence and leaves its outputs unchanged") {
   inkwell_arm* arm = nullptr;
   CHECK(inkwell_open("usbip:nowhere", &arm) == INKWELL_BAD_ARGUMENT);
   CHECK(says("127.0.0.1:3240"));

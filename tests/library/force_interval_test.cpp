@@ -15,7 +15,7 @@ TEST_CASE("a program that answers each pose has an interval of one, also after a
   }
 }
 
-TEST_CASE("the interval follows a program that sends less often, and a pause is none") {
+TEST_CASE("the force interval follows a program with a lower rate, and a pause does not change the interval") {
   library::ForceInterval interval;
   std::uint32_t sequence = 0;
   const auto after = [&](std::uint32_t passed) { return interval.next(sequence += passed); };

@@ -153,7 +153,7 @@ TEST_CASE("every state and event has a meaning, and a state of another version h
   CHECK(info(static_cast<State>(state_table.size())).name == "unknown");
 }
 
-TEST_CASE("what becomes of a command to the store has a meaning and a remedy") {
+TEST_CASE("each result of a store command has a meaning and a remedy") {
   std::set<std::string_view> names;
   for (const StoreResultInfo& row : store_result_table) {
     CAPTURE(row.name);

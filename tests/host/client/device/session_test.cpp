@@ -83,7 +83,7 @@ TEST_CASE("the time of a board that was away goes on, also beyond the wrap of it
   CHECK(shows(wrap + 30));
 }
 
-TEST_CASE("a fault is told with the control period that noticed it, as far as that is known") {
+TEST_CASE("a reported fault has the control period of its detection if this period is known") {
   const auto reported_at = [](std::optional<std::uint32_t> box_periods, protocol::Fault box_fault, bool is_restart,
                               std::optional<std::uint32_t> pose_before) {
     FakeUsbipServer server;
@@ -198,7 +198,7 @@ TEST_CASE("a session comes back by itself, selects its signals again, and repeat
   CHECK(count_of(server, protocol::Command::enable_force) == 1);
 }
 
-TEST_CASE("what was asked for last still reaches the device when the session ends") {
+TEST_CASE("a session sends its last requests before it is destroyed") {
   FakeUsbipServer server;
   std::atomic<bool> judging = false;
   server.judge = [&](const protocol::ParametersReport&) {
@@ -271,7 +271,7 @@ TEST_CASE("changes on their way when the connection breaks reach the device afte
   REQUIRE(eventually([&] { return (*session.parameters())[Parameter::force_limit_N] == 2.5f; }));
 }
 
-TEST_CASE("what is asked for while a change is on its way in vain comes after it") {
+TEST_CASE("requests made during a failed transaction override its changes after the reconnection") {
   FakeUsbipServer server;
   server.transactions_to_break_at = 1;
   device::Session session([&] { return std::optional(server.endpoint()); });
@@ -310,7 +310,7 @@ TEST_CASE("defaults that were restored are not restored again when the change af
   CHECK(server.transactions() == 2);
 }
 
-TEST_CASE("what is asked for while a transaction is under way follows it") {
+TEST_CASE("requests made during a transaction are carried out after it") {
   FakeUsbipServer server;
   std::optional<device::Session> session;
   server.judge = [&](const protocol::ParametersReport& report) {

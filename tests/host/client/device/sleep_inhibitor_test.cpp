@@ -136,7 +136,9 @@ TEST_CASE("the inhibitor ends with its object, even if its program does not read
   CHECK_FALSE(is_running(fake.runs()[0].process));
 }
 
-TEST_CASE("the inhibitor's program has a session of its own, no open files, no precedence, and plain signals") {
+TEST_CASE(
+    "the inhibitor process has a separate session, no inherited files, no raised priority and default signal "
+    "settings") {
   const FakeInhibit fake;
   const auto handler_before = signal(SIGUSR1, SIG_IGN);
   int ends[2];

@@ -29,7 +29,7 @@ Bytes bulk_number(int number) { return Bytes(100, static_cast<std::byte>(number)
 
 }  // namespace
 
-TEST_CASE("arms on USB are told from others by identifiers and product name") {
+TEST_CASE("find_usb_devices identifies arms by their identifiers and product name") {
   FakeUsb usb;
   usb.add_arm("A");
   usb.add_arm("B").product = L"Somebody's test";
@@ -156,7 +156,7 @@ TEST_CASE("a session goes on without the scope while another program has it, say
   CHECK(usb.open_things == 0);
 }
 
-TEST_CASE("an arm that this user may not open is told with the udev line") {
+TEST_CASE("the error for an arm without access permission contains the udev line") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   arm.open_result = LIBUSB_ERROR_ACCESS;
@@ -249,7 +249,7 @@ TEST_CASE("a session whose scope breaks connects anew, and goes on with it") {
   CHECK(usb.open_things == 0);
 }
 
-TEST_CASE("a wait that is over before it begins is none, never one without an end") {
+TEST_CASE("read_pose with a negative time-out returns immediately") {
   FakeUsb usb;
   device::Device arm(device::open_transport(usb.add_arm("A").endpoint()));
   CHECK_FALSE(arm.read_pose(-1ms));

@@ -38,7 +38,7 @@ TEST_CASE("a request that is not answered in time is taken back, and the connect
   }));
 }
 
-TEST_CASE("a request whose answer breaks off is told that the device is gone, at once") {
+TEST_CASE("a request with a truncated answer immediately raises Disconnected") {
   LocalServer server([](int client) {
     const auto send_all = [&](const auto& message, std::size_t size) { send(client, &message, size, MSG_NOSIGNAL); };
     usbip::ImportRequest import;

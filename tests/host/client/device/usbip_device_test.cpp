@@ -139,7 +139,7 @@ TEST_CASE("a scope that another program has costs only the scope, until it is fr
   CHECK(arm->read_scope(60s)->first_period == 5);
 }
 
-TEST_CASE("a device that takes no more commands is told, and not sent ever more of them") {
+TEST_CASE("a device that accepts no more commands causes an error, and no further commands are sent to it") {
   FakeUsbipServer server;
   server.holds_outputs = true;
   const auto arm = device::Device::open(server.endpoint());
@@ -158,7 +158,8 @@ TEST_CASE("a device that takes no more commands is told, and not sent ever more 
   CHECK(server.commands().size() == under_way);
 }
 
-TEST_CASE("what was written is waited for until the device has all of it, or takes none for a second of its time") {
+TEST_CASE(
+    "wait_until_written waits until the device accepts everything, or accepts nothing for one second of device time") {
   FakeUsbipServer server;
   server.holds_outputs = true;
   const auto arm = device::Device::open(server.endpoint());
@@ -266,7 +267,7 @@ TEST_CASE("a server that breaks the rules of USB/IP is left with a sentence") {
   CHECK(contains(message_of<device::Disconnected>([&] { arm->read_pose(60s); }), words));
 }
 
-TEST_CASE("what answers but does not speak USB/IP 1.1.1 is told so") {
+TEST_CASE("a server that does not use USB/IP 1.1.1 causes an error") {
   FakeUsbipServer server;
   std::size_t at = 0;
   SUBCASE("another version") { at = 1; }
@@ -377,7 +378,7 @@ TEST_CASE("poses, frames, samples and transactions are on one time that does not
   CHECK(arm->set_parameters({&change, 1}).applied_at_periods == wrap + 100);  // the first time that this server returns
 }
 
-TEST_CASE("the begin of the newest frame of the bus is told as the device counts it") {
+TEST_CASE("bus_frame returns the newest bus frame with its start time in device cycles") {
   FakeUsbipServer server;
   server.bus_frame.sequence = 12;
   server.bus_frame.time_cycles = 345;
@@ -528,7 +529,7 @@ TEST_CASE("the scope is given back by a transfer that is taken back, also where 
   transport->release_scope();
 }
 
-TEST_CASE("a connection that breaks is told as Disconnected, in every call") {
+TEST_CASE("every call raises Disconnected after the connection breaks") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   server.send(1, bytes_of(pose_number(1)));
@@ -582,7 +583,7 @@ TEST_CASE("a device continues on another link, and calls that wait on the old on
   CHECK(samples->lost_before == 0);
 }
 
-TEST_CASE("a device that is in use, or is none of ours, is refused") {
+TEST_CASE("a device that is in use, damaged or absent is refused") {
   FakeUsbipServer server;
   SUBCASE("in use") {
     server.refuses_import = true;
@@ -600,13 +601,13 @@ TEST_CASE("a device that is in use, or is none of ours, is refused") {
     server.device_descriptor.pop_back();
     CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "damaged"));
   }
-  SUBCASE("nobody there") {
+  SUBCASE("no program answers at the port") {
     CHECK(contains(message_of<device::Error>([] {
                      device::find_usbip_devices({"127.0.0.1", 1});
                    }),
                    "No program answers"));
   }
-  SUBCASE("a name that is none") {
+  SUBCASE("the host name is invalid") {
     CHECK(contains(message_of<device::Error>([] {
                      device::find_usbip_devices({"not a name", 1});
                    }),

@@ -141,7 +141,7 @@ TEST_CASE("a virtual board gets the options that are seldom given, and no others
             "--brown-out 3 --strict --profile longest.txt");
 }
 
-TEST_CASE("of all that a virtual board said before it failed the end is told") {
+TEST_CASE("the error of a virtual board that failed contains only the end of its output") {
   const Script script(
       "i=0\nwhile [ $i -lt 500 ]; do echo some of the many lines >&2; i=$((i + 1)); done\n"
       "echo the last one >&2\nexit 1\n");

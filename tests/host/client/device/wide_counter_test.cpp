@@ -38,7 +38,7 @@ TEST_CASE("values may come out of order, from either side of the wrap") {
   CHECK(counter.nearest(0x8000'0003) == 0x8000'0003);
 }
 
-TEST_CASE("what was counted before the first wrap that a program could see is below zero") {
+TEST_CASE("WideCounter returns a negative count for a counter value before the first wrap") {
   WideCounter counter;
   counter.note(4);
   CHECK(counter.nearest(0xFFFF'FFFF) == -1);

@@ -222,7 +222,7 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   CHECK(content() == pictures);
 }
 
-TEST_CASE("what may be a chip's flash begins with vectors into it, or erased") {
+TEST_CASE("may_be_flash accepts content whose vectors point into the flash or are erased") {
   std::vector<std::byte> flash(protocol::flash_bytes, std::byte{0xFF});
   const auto with_vectors = [&](std::uint32_t stack, std::uint32_t first_instruction) {
     std::memcpy(flash.data(), &stack, sizeof stack);

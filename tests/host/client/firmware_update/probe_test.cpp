@@ -182,7 +182,7 @@ TEST_CASE("the installed firmware is read without a halt") {
   CHECK_FALSE(contains(reading, "halt"));
 }
 
-TEST_CASE("what openocd prints of a probe is safe to print") {
+TEST_CASE("control characters in the output of openocd are replaced by question marks") {
   const FakeOpenocd fake("printf 'serial \\033[2Jred\\r\\nlast'; " + reports_verified);
   std::vector<std::string> lines;
   update_by_probe(good_image(), "stlink", {}, [&](const std::string& line) { lines.push_back(line); });

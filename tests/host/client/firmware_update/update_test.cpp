@@ -132,7 +132,7 @@ TEST_CASE("vectors go first and come last, and the brown-out level is set once a
   CHECK(fake.did.back() == "options");  // writing the option bytes resets the chip
 }
 
-TEST_CASE("what the board holds may choose the image") {
+TEST_CASE("the board name of the installed firmware can select the image") {
   FakeLoader fake;
   BootLoader loader(fake);
   const auto other = read_image(made_elf(made_segments(protocol::image_identity("other", 1, 2, 3))), "other.elf");
@@ -153,7 +153,7 @@ TEST_CASE("what the board holds may choose the image") {
   }
 }
 
-TEST_CASE("what differs when it is read back keeps the vectors away") {
+TEST_CASE("if the image differs when it is read back, its vectors are not written") {
   FakeLoader fake;
   BootLoader loader(fake);
   fake.spoilt = protocol::image_begin + 0x1'0000;

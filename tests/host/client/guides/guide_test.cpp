@@ -124,7 +124,7 @@ TEST_CASE("the shunt is that of the board that is there; of an unknown board no 
   }
 }
 
-TEST_CASE("a refused proposal is told with the device's words") {
+TEST_CASE("a refused proposal reports the refusal text of the device") {
   FakeArm arm;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   arm.run(guide, true);
@@ -246,7 +246,7 @@ TEST_CASE("encoders that count down and motors that turn backward are found") {
     }
 }
 
-TEST_CASE("a joint that does not turn under its motor is told, not guessed") {
+TEST_CASE("the directions guide fails with a message if a joint does not turn with its motor") {
   FakeArm arm;
   arm.motor_is_stuck = true;
   Guide guide = guides::directions_guide.start();

@@ -68,7 +68,7 @@ TEST_CASE("resistance and inductance are found through noise, dead time and back
     }
 }
 
-TEST_CASE("the delay is a figure of its own and does not pass for inductance") {
+TEST_CASE("the motor identification separates the delay from the inductance") {
   const Motor motor{2.26, 0.238e-3, 0.0};
   for (const double delay_s : {0.5 * period_s, period_s, 1.5 * period_s}) {
     const auto found = guides::identify(pulses_of(motor, 3, delay_s), period_s, ripple_A);

@@ -78,7 +78,7 @@ TEST_CASE("in a child the parent's descriptor leads nowhere, and the parent keep
   close(ends[1]);
 }
 
-TEST_CASE("an object of the parent knows in a child that it is none of the child's") {
+TEST_CASE("Origin::is_here returns false in a forked child process") {
   const process::Origin origin;
   CHECK(origin.is_here());
   CHECK(origin.process() == getpid());

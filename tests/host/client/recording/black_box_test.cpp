@@ -51,7 +51,7 @@ Information about() {
 
 }  // namespace
 
-TEST_CASE("a black box comes back from either format, with its mark, its step and values that are none") {
+TEST_CASE("both file formats preserve a black box with its mark, its step and non-finite values") {
   const TemporaryDirectory directory;
   auto kept = rows();
   kept[3].values[static_cast<std::size_t>(Signal::force_N)] = std::numeric_limits<float>::quiet_NaN();

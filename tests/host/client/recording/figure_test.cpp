@@ -191,7 +191,7 @@ TEST_CASE("every line of a full pane is named beside it") {
   for (std::size_t y = 0; y < image.height; ++y) REQUIRE(image.at(image.width - 2, y).red == 255);
 }
 
-TEST_CASE("what cannot be drawn is said in a sentence") {
+TEST_CASE("a figure that cannot be drawn causes an error that states the reason") {
   const TemporaryDirectory directory;
   const auto recording = wave(3000);
   CHECK(error_of(recording, {.quantities = {Signal::torque_1_Nm}}, directory / "a.png")

@@ -161,7 +161,7 @@ TEST_CASE("a recording comes back as it was written") {
   }
 }
 
-TEST_CASE("what a simulation knew is kept beside the signals") {
+TEST_CASE("both file formats preserve the simulated quantities of a recording") {
   const TemporaryDirectory directory;
   const auto whole = simulated();
   for (const char* name : {"a.h5", "a.csv"}) {
@@ -248,7 +248,7 @@ TEST_CASE("samples that were lost show as a gap and are counted") {
   CHECK(read(directory / "a.h5").lost() == 20);
 }
 
-TEST_CASE("what happens to the device stands at its own control period, with kind and clock, in the order of time") {
+TEST_CASE("marks of device events are sorted by control period and contain the kind and the clock of the event") {
   const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
     CAPTURE(name);
@@ -536,7 +536,7 @@ TEST_CASE("marks of a recording without samples have no time") {
   CHECK(log_text(recording).find("knock") != std::string::npos);
 }
 
-TEST_CASE("what a newer version wrote is read as far as it is known, and the rest is named") {
+TEST_CASE("a file from a newer version is read as far as it is known, and remarks name the rest") {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.csv") << "# inkwell recording = 99\n# parameter wobble_m = 3\n"
                                         "time_s,force_N,wobble_N,duty_1\n0.00005,1.5,9,0.25\n";

@@ -132,7 +132,7 @@ TEST_CASE("the pose at a position is what the device reported then") {
   CHECK_FALSE(Replay(recorded({Signal::force_N}, {{0, 1}})).pose());
 }
 
-TEST_CASE("what a simulation knew is no part of a replay, because no device tells it") {
+TEST_CASE("a replay omits the simulated quantities of its recording") {
   auto recording = recorded({Signal::force_N}, {{100, 10}});
   recording.information.simulated = {SimulatedQuantity::true_current_1_A};
   recording.simulated_columns = {std::vector<float>(10, 7.0f)};

@@ -87,7 +87,7 @@ TEST_CASE("gnuplot draws the four figures, each line in its colour") {
   }
 }
 
-TEST_CASE("what cannot be drawn as in the paper is said in a sentence") {
+TEST_CASE("a recording that cannot be drawn as a paper figure causes an error that states the reason") {
   const TemporaryDirectory directory;
   const auto error_of = [&](const recording::Recording& recording, const PaperFigureOptions& options) {
     return message_of<device::Error>([&] { draw_figures(recording, directory.path(), options); });

@@ -87,7 +87,7 @@ TEST_CASE("a board drives for its self-test after a start and on command, and no
   restarted.check_only(Complaint::unasked_force);
 }
 
-TEST_CASE("force that nobody asked for is told by the state, and by the bridges alone") {
+TEST_CASE("the oracle detects an unrequested force from the state, and from the bridges alone") {
   Watched by_state;
   by_state.switch_on();
   by_state.oracle.withdraw_force(0.0);
@@ -156,7 +156,7 @@ TEST_CASE("a fault is a false trip unless its phase may have it, and until its c
   lost.check_only(Complaint::false_trip);
 }
 
-TEST_CASE("a fault whose cause was there is missed when nothing or another one is told") {
+TEST_CASE("the oracle reports a missed fault if the board reports no fault or another fault") {
   Watched board(Kind::too_fast);
   board.step(State::fault, Fault::over_speed);
   board.oracle.require_report_of(protocol::condition(Fault::over_speed));
@@ -253,7 +253,7 @@ TEST_CASE("a force that goes on and off between two looks is judged") {
   board.check_only(Complaint::too_much_force);
 }
 
-TEST_CASE("the motors' force is judged as the force goes off, and not where there is none") {
+TEST_CASE("the oracle judges the motor force while the force switches off, and not after it is off") {
   Watched tripped(Kind::too_fast);
   tripped.switch_on();
   tripped.motor_force_N = 5.0;

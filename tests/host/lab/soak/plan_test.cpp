@@ -33,7 +33,7 @@ link::ParameterCheck checked(const Changes& changes, const ParameterSet& now, bo
 
 }  // namespace
 
-TEST_CASE("every deck has each kind as often as the table says, in an order of its own") {
+TEST_CASE("every shuffled deck has each kind as often as the table states, in a different order") {
   Random random(1, 1);
   const auto deck = shuffled_deck(random), next = shuffled_deck(random);
   for (std::size_t i = 0; i < kind_table.size(); ++i) {

@@ -7,7 +7,7 @@
 using namespace inkwell;
 using namespace inkwell::window;
 
-TEST_CASE("the hottest motor is told, with what to do in time") {
+TEST_CASE("the heat advice names the hottest motor, and for a hot motor recommends switching the force off") {
   protocol::InformationReport report{};
   CHECK(heat_advice(motor_heat_view(report)).empty());
   report.motor_heat[1] = 0.85f;

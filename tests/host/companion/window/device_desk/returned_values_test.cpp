@@ -39,7 +39,7 @@ TEST_CASE("nothing is said before the first reconnection, and nothing while the 
   CHECK_FALSE(values.is_shown());
 }
 
-TEST_CASE("that the values are the same is told for some seconds") {
+TEST_CASE("the message that all values are unchanged is shown for six seconds") {
   ReturnedValues values;
   const auto view = returned({});
   values.follow(view, 10.0);
@@ -52,7 +52,7 @@ TEST_CASE("that the values are the same is told for some seconds") {
   CHECK_FALSE(values.is_shown());
 }
 
-TEST_CASE("other values stay told, with those of before, until the user keeps them") {
+TEST_CASE("changed values are shown with their previous values until the user dismisses the list") {
   ReturnedValues values;
   const auto view = returned({{stiffness, 1500.0f}, {damping, 3.0f}});
   values.follow(view, 0.0);
@@ -82,7 +82,7 @@ TEST_CASE("a value that was changed since is settled, whatever it became") {
   CHECK_FALSE(values.is_shown());
 }
 
-TEST_CASE("each reconnection is told anew") {
+TEST_CASE("each reconnection shows the changed values again") {
   ReturnedValues values;
   auto view = returned({{stiffness, 1500.0f}});
   values.follow(view, 0.0);

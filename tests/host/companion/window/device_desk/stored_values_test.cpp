@@ -22,7 +22,7 @@ window::DeviceView connected(State state) {
 
 }  // namespace
 
-TEST_CASE("how many values are not stored is told in words") {
+TEST_CASE("stored_title states in words how many values are not stored") {
   CHECK(window::stored_title({}).empty());
   CHECK(window::not_stored({}).empty());
   auto view = connected(State::ready);

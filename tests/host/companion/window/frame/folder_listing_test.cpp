@@ -40,7 +40,7 @@ TEST_CASE("a folder is listed with its folders first, and only with the files th
   CHECK(list_folder(folder, {}).entries.size() == 4);
 }
 
-TEST_CASE("what cannot be listed, read or written is told in a sentence") {
+TEST_CASE("a file or folder that cannot be listed, read or written is reported with the reason") {
   const TemporaryDirectory directory;
   const fs::path file = directory.file("a.toml");
   write(file, "");

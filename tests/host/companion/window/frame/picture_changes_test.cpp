@@ -29,7 +29,7 @@ bool holds(const Box& box, const Box& part) { return enclosing(box, part) == box
 
 }  // namespace
 
-TEST_CASE("what is as before is not drawn") { CHECK(changes_between(picture(), picture()).empty()); }
+TEST_CASE("a picture without changes needs no drawing") { CHECK(changes_between(picture(), picture()).empty()); }
 
 TEST_CASE("a part that has changed is drawn, and neither its pane nor the canvas with it") {
   DrawnPicture now = picture();

@@ -38,7 +38,7 @@ TEST_CASE("a search looks for each of its words in name, part and help") {
   CHECK(names_found("encoder nothing").empty());
 }
 
-TEST_CASE("faults go into a virtual board whose control port is known, and what else is connected is told why not") {
+TEST_CASE("obstacle states the reason unless faults can be injected into a virtual board with a control port") {
   using device::Connection;
   const device::SessionStatus none{};
   device::SessionStatus real{.connection = Connection::connected}, simulation = real;
@@ -65,7 +65,7 @@ TEST_CASE("the wires are those of the board's facts, without the cable's") {
   CHECK(std::ranges::count(names, "usb_plus") == 0);
 }
 
-TEST_CASE("what was typed is asked for, and what was left empty is the board's") {
+TEST_CASE("request_of returns the entered values, and empty fields leave the defaults of the board") {
   const auto request = request_of({InjectedFault::shunt_offset, "2", "0.25", "1.5", "1e-3"});
   CHECK(request.fault == "shunt_offset");
   CHECK(request.of == "2");
@@ -84,7 +84,7 @@ TEST_CASE("of another fault's fields nothing is asked for") {
   CHECK_FALSE(request.amount);
 }
 
-TEST_CASE("what is no number is told with its field") {
+TEST_CASE("the error for a field that is not a number names the field") {
   const auto text_of = [](const TypedInjection& typed) {
     return message_of<device::Error>([&] { request_of(typed); });
   };
@@ -110,7 +110,7 @@ TEST_CASE("a fault is shown with its location and its amount") {
   CHECK(text_of("of_another_version", "7", 3) == "7, 3");
 }
 
-TEST_CASE("a duration is told in milliseconds or seconds") {
+TEST_CASE("duration_text returns milliseconds or seconds") {
   CHECK(duration_text(0.00005) == "0.05 ms");
   CHECK(duration_text(0.0124) == "12.4 ms");
   CHECK(duration_text(1.352) == "1.35 s");

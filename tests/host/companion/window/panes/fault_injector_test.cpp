@@ -44,7 +44,7 @@ bool was_asked(FakeControlServer& server, const json& request) {
 
 }  // namespace
 
-TEST_CASE("the board is asked again and again, and told what to do") {
+TEST_CASE("the fault injector polls the board and sends injections and repairs") {
   FakeControlServer server([](const json& request) {
     return request.at("command") == "inject" ? R"({"ok": true, "number": 3, "at_s": 1.6})" + std::string("\n")
                                              : nothing_in + std::string("\n");
@@ -64,7 +64,7 @@ TEST_CASE("the board is asked again and again, and told what to do") {
   CHECK(was_asked(server, {{"command", "heal"}, {"fault", "motor_open"}, {"of", "2"}}));
 }
 
-TEST_CASE("a refusal is told, and what comes after it is done") {
+TEST_CASE("the fault injector reports a refusal and continues to poll the board") {
   FakeControlServer server([](const json& request) {
     return request.at("command") == "inject" ? R"({"ok": false, "error": "there is no such motor"})" + std::string("\n")
                                              : nothing_in + std::string("\n");
@@ -75,7 +75,7 @@ TEST_CASE("a refusal is told, and what comes after it is done") {
   CHECK(wait_for<device::Injections>(faults).period == 7);
 }
 
-TEST_CASE("a board that goes away is told once, and is asked again when it is back; nothing of before is done then") {
+TEST_CASE("the fault injector reports a lost board once, continues to poll it, and discards earlier requests") {
   std::atomic<bool> answers = true;
   FakeControlServer server([&](const json&) { return answers ? nothing_in + std::string("\n") : std::string("no\n"); });
   FaultInjector faults({"127.0.0.1", server.port()});

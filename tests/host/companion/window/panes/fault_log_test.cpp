@@ -57,14 +57,14 @@ TEST_CASE("a fault is to come, in, and over, whoever put it in") {
   CHECK(log.faults()[0].phase == Phase::over);
 }
 
-TEST_CASE("what is healed before it came is no longer told") {
+TEST_CASE("a fault that is healed before its start disappears from the log") {
   FaultLog log;
   log.take(answer(2.0, {to_come(1, 3.0)}));
   log.take(answer(2.5, {}));
   CHECK(log.faults().empty());
 }
 
-TEST_CASE("one that is over before the board is asked again is told as over") {
+TEST_CASE("a fault that ends before the next poll is listed as over") {
   FaultLog log;
   log.add(injection(1, 2.0));
   CHECK(log.faults()[0].phase == Phase::in);
@@ -73,7 +73,7 @@ TEST_CASE("one that is over before the board is asked again is told as over") {
   CHECK(log.faults()[0].phase == Phase::over);
 }
 
-TEST_CASE("of those that are over the newest are told, all that are in") {
+TEST_CASE("the log lists all active faults, but only the newest faults that are over") {
   FaultLog log;
   std::vector<Injection> all;
   for (unsigned number = 1; number <= FaultLog::over_maximum + 3; ++number) all.push_back(injection(number, 2.0));
@@ -113,7 +113,7 @@ TEST_CASE("a noticed fault is set beside each that came before, with the time to
   CHECK_FALSE(log.faults()[3].noticed);  // injected later
 }
 
-TEST_CASE("only the first that was noticed is told") {
+TEST_CASE("the log shows only the first reported fault of an injection") {
   FaultLog log;
   log.take(answer(2.0, {injection(1, 1.9)}));
   log.notice({Fault::supply_low, 20'000});

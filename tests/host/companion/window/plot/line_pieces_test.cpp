@@ -32,7 +32,7 @@ TEST_CASE("a line is cut where it turns back, and the pieces share that point") 
   CHECK(&pieces[2].back() == &line.back());
 }
 
-TEST_CASE("a bend of a right angle and a straight line are one piece, a point is none") {
+TEST_CASE("a straight line or a line with right angles is one piece, and a single point is not a piece") {
   CHECK(lengths_of_pieces({{0, 0}, {1, 0}, {1, 1}, {2, 1}, {3, 1}}) == std::vector<std::size_t>{5});
   CHECK(lengths_of_pieces({{0, 0}, {5, 5}}) == std::vector<std::size_t>{2});
   CHECK(lengths_of_pieces({{0, 0}}).empty());

@@ -62,7 +62,7 @@ TEST_CASE("the unit of a sum is known, that of a product is to be stated") {
   CHECK(refusal_of(formula("force_x_N * velocity_x_m_s", "W")).empty());
 }
 
-TEST_CASE("what is no formula is refused in plain words") {
+TEST_CASE("an invalid formula is refused with a sentence that names the mistake") {
   const auto refused = [](const std::string& text, const char* part) {
     const std::string reason = refusal_of(formula(text));
     CAPTURE(text);

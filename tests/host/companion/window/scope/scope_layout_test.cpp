@@ -16,7 +16,7 @@ TEST_CASE("layouts name existing signals, and fit into one selection") {
   CHECK(built_in_layout("none of them").name == built_in_layouts().front().name);
 }
 
-TEST_CASE("layouts of one's own are saved, replaced, renamed and removed; the built-in ones stay") {
+TEST_CASE("custom layouts can be saved, replaced, renamed and removed, and built-in layouts do not change") {
   OwnLayouts own;
   ScopeLayout layout = built_in_layout("currents");
   layout.name = "mine";
