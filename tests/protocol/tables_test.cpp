@@ -265,7 +265,7 @@ TEST_CASE("the numbers of the protocol, which both ends of another version count
   CHECK(wire_size(SignalWire::duty_int16) == 2);
 }
 
-TEST_CASE("what is on the wire lies where it should") {
+TEST_CASE("the reports have the specified field offsets and sizes") {
   CHECK(offsetof(PoseReport, fault) == 2);
   CHECK(offsetof(PoseReport, sequence) == 4);
   CHECK(offsetof(PoseReport, position_m) == 12);
@@ -283,7 +283,7 @@ TEST_CASE("what is on the wire lies where it should") {
   CHECK(offsetof(StoreReport, unknown_ids) == 44);
 }
 
-TEST_CASE("a board's name has an end and can be printed, or is none") {
+TEST_CASE("board_name returns a terminated printable name, and an empty name otherwise") {
   char field[board_name_maximum + 1]{};
   CHECK(board_name(field).empty());
   const auto named = [&](std::string_view name) {

@@ -48,7 +48,7 @@ class Driving(unittest.TestCase):
         self.assertEqual(calls, after)
         self.assertFalse(self.arm.servo_is_running)
 
-    def test_what_a_servo_raises_ends_it_and_comes_out(self):
+    def test_an_exception_in_a_servo_stops_it_and_is_raised_once(self):
         def broken(pose):
             raise ZeroDivisionError("in the servo")
 
@@ -76,7 +76,7 @@ class Driving(unittest.TestCase):
             raise KeyError("of the program")
         self.assertIn("ZeroDivisionError", raised.exception.__notes__[0])
 
-    def test_what_is_no_force_ends_the_servo(self):
+    def test_an_invalid_force_ends_the_servo(self):
         for answer, error, words in (((math.nan, 0, 0), ValueError, "not a finite number"),
                                      ((0, math.inf, 0), ValueError, "not a finite number"),
                                      ((1, 2), TypeError, "three numbers")):
@@ -121,7 +121,7 @@ class Driving(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "^The argument is .*Give three numbers, the force in N"):
                 self.arm.set_force(wrong)
 
-    def test_a_limit_that_holds_the_force_back_is_told(self):
+    def test_a_limit_that_reduces_the_force_is_reported(self):
         make_active(self.arm)
 
         def push_until(force_N, condition):

@@ -155,7 +155,7 @@ class Examples(unittest.TestCase):
             self.assertTrue(counted, said)
             self.assertAlmostEqual(float(counted[1]), 80, delta=15)
 
-    def test_what_is_missing_is_said(self):
+    def test_missing_addresses_are_reported(self):
         for name in "two_arms.cpp", "two_arms.py":
             program = subprocess.run([*command(name)], stderr=subprocess.PIPE, text=True)
             self.assertNotEqual(program.returncode, 0)

@@ -52,7 +52,7 @@ class SelfTest(unittest.TestCase):
 
 
 class Storing(unittest.TestCase):
-    def test_what_is_stored_is_told_restored_and_forgotten(self):
+    def test_stored_parameters_are_reported_restored_and_erased(self):
         arm = inkwell.open("virtual")
         self.addCleanup(arm.close)
         parameters = arm.parameters
@@ -155,7 +155,7 @@ class Reading(unittest.TestCase):
             self.arm.parameters.nope
         self.assertEqual(str(raised.exception), "There is no parameter nope. `inkwell parameters` lists them all.")
 
-    def test_what_is_of_a_wrong_type_is_told_in_a_sentence(self):
+    def test_an_argument_of_a_wrong_type_is_reported_in_a_sentence(self):
         arm = self.arm
         for attempt, words in ((lambda: inkwell.open(5), "is 5. Give the address as text"),
                                (lambda: arm.servo(1), "1 cannot be called. Give a function"),
@@ -215,7 +215,7 @@ class Reading(unittest.TestCase):
             with self.assertRaises(inkwell.Error), self.arm.record(pathlib.Path(folder, "no/such/arm.csv"), "supply_V"):
                 pass
 
-    def test_times_that_are_none(self):
+    def test_an_invalid_timeout_is_refused(self):
         for timeout_s in math.nan, -1.0:
             with self.assertRaisesRegex(inkwell.BadArgument, "time-out"):
                 self.arm.wait_for_pose(timeout_s)
@@ -264,7 +264,7 @@ class Programs(unittest.TestCase):
             arm.clear_fault()
             self.assertEqual(arm.pose.state, inkwell.State.READY)
 
-    def test_what_takes_the_force_away_ends_the_servo_and_comes_out_once(self):
+    def test_the_loss_of_the_force_ends_the_servo_and_is_raised_once(self):
         with VirtualBoard(BUILD) as board, inkwell.open(board.address) as arm, inkwell.open(board.address) as other:
             be_patient(arm)
             wait_until(arm, lambda pose: pose.state == inkwell.State.READY)

@@ -164,7 +164,7 @@ TEST_CASE("the companion refuses what it does not know") {
     check_refused(result, {"--seconds", "-1", "more than 0"});
     CHECK(result.err.size() < 200);  // a range up to the largest representable number is not helpful
   }
-  SUBCASE("what is no number, of an option or an argument of any command") {
+  SUBCASE("an option or an argument of a command is not a number") {
     const auto program_says = [](const std::string& program, const std::vector<std::string>& words,
                                  const std::string& sentence) {
       const auto result = run_program(program, words);
@@ -275,7 +275,7 @@ TEST_CASE("parameters that were saved are not overwritten unless that is asked f
 }
 
 // /dev/full rejects every write, like a full disk.
-TEST_CASE("a full disk is told in our words, and nothing half written is left") {
+TEST_CASE("a full disk is reported in a sentence, and no partial file remains") {
   const TemporaryDirectory directory;
   const auto file = directory.file("push.csv");
   REQUIRE(run_program("inkwell", {"--virtual", "record", file, "--seconds", "0.1"}).exit_code == 0);

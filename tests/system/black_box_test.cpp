@@ -149,8 +149,7 @@ TEST_CASE("a processor fault leaves the rows before it and the address of the cr
   CHECK(saved.exit_code == 0);
 }
 
-TEST_CASE(
-    "a supply of the chip that fades below its brown-out level is told after the restart, with the rows before it") {
+TEST_CASE("a 3.3 V supply below the brown-out level is reported after the restart with the rows before the reset") {
   auto options = stepped_board(device::SimulationMode::exact, device::CyclePricing::likely);
   options.brown_out_level = 3;
   BoardRig rig(options);
@@ -169,7 +168,7 @@ TEST_CASE(
   rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
 }
 
-TEST_CASE("a crash while the black box of another fault is kept is told beside it, the newest of two") {
+TEST_CASE("a crash while a black box is retained is reported with it, and a second crash replaces the first crash") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({.fault = "bridge_fault", .for_s = 0.01});

@@ -76,7 +76,7 @@ TEST_CASE("every board starts, passes its self-test, finds its reference, and re
   }
 }
 
-TEST_CASE("a board's name is told with its versions") {
+TEST_CASE("the program shows the board name in text and in JSON") {
   const std::vector<std::string> of_bench{"info", "--virtual", "--board", "bench_modules"};
   const auto text = run_program("inkwell", of_bench);
   INFO(text.err);
@@ -115,7 +115,7 @@ TEST_CASE("the firmware of one board, flashed on another, shows no device and dr
   CHECK(largest_current_A(control) == 0.0);
 }
 
-TEST_CASE("a board that nobody knows is refused with those that are known") {
+TEST_CASE("an unknown board name is refused with a list of the known boards") {
   const auto run = run_program("inkwell", {"info", "--virtual", "--board", "feather"});
   CHECK(run.exit_code == 1);
   CHECK(run.err == "inkwell: There is no board with the name feather. Known boards are bench_modules, omni_driver.\n");

@@ -123,7 +123,7 @@ TEST_CASE("a fault whose cause takes a while to go is cleared again, as a user d
   CHECK(campaign::regain_force(board));
 }
 
-TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound arm bears it") {
+TEST_CASE("the use after a case detects a stuck encoder, and reports no fault of a healthy arm") {
   const Result stuck = result_of("encoder_stuck:2 rest 1");
   CHECK(stuck.detected_as == protocol::Fault::none);
   CHECK(stuck.noticed_in_use_as == NoticedInUse{NoticedInUse::By::fault, protocol::Fault::motor_implausible});
@@ -215,7 +215,7 @@ TEST_CASE("a hand that swings the arm while the host falls silent or the core is
   }
 }
 
-TEST_CASE("a main loop that stands for a while takes the force away and is told, and goes on without a restart") {
+TEST_CASE("a main loop that stalls for 12 ms switches the force off with a fault and continues without a restart") {
   const Result result = result_of("main_loop_stalled=0.012 wall 1");
   REQUIRE(result.off_after_s);
   CHECK(*result.off_after_s < 0.0105);
@@ -233,7 +233,7 @@ TEST_CASE("a chip that no longer hears its converters is restarted by the watchd
   CHECK(result.recovery == Recovery::clear_fault);
 }
 
-TEST_CASE("a supply of the chip that fades holds it in reset, as on a flashed board, and is told once it is back") {
+TEST_CASE("a failing 3.3 V supply resets the chip and is reported after the restart") {
   const Result result = result_of("logic_sag wall 1");
   REQUIRE(result.off_after_s);
   CHECK(*result.off_after_s < 2 * control_period_s);
@@ -243,7 +243,7 @@ TEST_CASE("a supply of the chip that fades holds it in reset, as on a flashed bo
   CHECK(result.recovery == Recovery::clear_fault);
 }
 
-TEST_CASE("what an unnoticed fault gives the hand in use is measured, and for a sound arm, too") {
+TEST_CASE("the campaign measures the energy of the use after a fault-free case") {
   const Result fault_free = result_of("none rest 1");
   CHECK(fault_free.energy_in_use_J.value_or(0.0) > 0.01);
   CHECK(fault_free.energy_in_use_J.value_or(0.0) > fault_free.energy_J);
@@ -257,7 +257,7 @@ TEST_CASE("without force nothing goes on, and the arm finds its reference in the
   CHECK(result.position_error_m.value() < 0.0005);
 }
 
-TEST_CASE("a fault that is told stays told, and the next one is told once it is cleared; the black box keeps it else") {
+TEST_CASE("the first of two faults is reported until it is cleared, or is in the black box after a restart") {
   const Result tripped = result_of("bridge_fault fault 1");
   CHECK(tripped.told_before == protocol::Fault::host_silent);
   CHECK(tripped.first_fault == campaign::FirstFault::reported);
@@ -302,7 +302,7 @@ TEST_CASE("a board on the way to its boot loader gets there, and its firmware te
   CHECK(unplugged.recovery == Recovery::none_needed);
 }
 
-TEST_CASE("what is broken before the power comes, or breaks while the board starts, is told by it") {
+TEST_CASE("the board reports a fault that exists at power-on or occurs during start-up") {
   for (const char* name : {"none starting 1", "none starting 2", "none starting 3"}) {
     CAPTURE(name);
     const Result fault_free = result_of(name);
@@ -321,7 +321,7 @@ TEST_CASE("what is broken before the power comes, or breaks while the board star
   CHECK(late.recovery == Recovery::clear_fault);
 }
 
-TEST_CASE("a hand that flings the arm is told it was too fast, feels no more than without a force, and may go on") {
+TEST_CASE("a hand that moves the arm too fast raises over_speed, feels less than without a force, and can continue") {
   const Result free = result_of("fast_hand ready 1");
   CHECK_FALSE(campaign::is_detected(free));
   for (const char* name : {"fast_hand rest 1", "fast_hand wall 1", "fast_hand motion 1"}) {
@@ -362,7 +362,7 @@ TEST_CASE("a location that the seed chose is printed with the case") {
   CHECK(run.out.find("ram_bit unreferenced 1 at " + results[0].location + ": ") != std::string::npos);
 }
 
-TEST_CASE("the list of the campaign is for people and for batch systems; a case that is none is refused") {
+TEST_CASE("campaign list prints text or numbers, and an unknown case is refused") {
   const auto numbers = run_program("inkwell-lab", {"campaign", "list", "--numbers"});
   CHECK(numbers.exit_code == 0);
   CHECK(std::ranges::count(numbers.out, '\n') == static_cast<std::ptrdiff_t>(campaign::all_cases().size()));

@@ -75,7 +75,7 @@ TEST_CASE("a fault is shown with its remedy, and cleared once its cause is gone"
   CHECK(cleared.out.starts_with("No fault."));
 }
 
-TEST_CASE("the black box is told of, saved as an ordinary recording, and gone when the force was switched on") {
+TEST_CASE("the black box is reported, saved as a recording, and removed when the force is switched on") {
   const TemporaryDirectory directory;
   const auto file = directory.file("fault.h5"), table = directory.file("fault.csv");
   BoardAndCompanion rig;

@@ -69,7 +69,7 @@ TEST_CASE("the firmware says on its console who it is and why it was reset") {
   CHECK(result.out.find(", reset cause 0000000e\r\n") != std::string::npos);
 }
 
-TEST_CASE("two boards are told apart by their serial numbers, which their seeds make") {
+TEST_CASE("the seed of a virtual board determines its serial number") {
   const auto serial_number_of = [](std::uint64_t seed) {
     return BoardRig(device::SimulationMode::fast, seed).device->information().serial_number;
   };
@@ -77,7 +77,9 @@ TEST_CASE("two boards are told apart by their serial numbers, which their seeds 
   CHECK(serial_number_of(0xABCDEF0012345678) == "12345678ABCDEF0039323539");
 }
 
-TEST_CASE("boards that are started by hand have serial numbers of their own, which stay where they can") {
+TEST_CASE(
+    "the serial number of a board follows from its flash file, port, seed or option, and otherwise differs at each "
+    "start") {
   const TemporaryDirectory directory;
   std::string port;
   const auto number_of = [&](std::vector<std::string> words) {

@@ -192,7 +192,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
     CHECK(waist_Nm < 0.01 * others_Nm);
   }
 
-  SUBCASE("what the firmware measures is what the simulation knows") {
+  SUBCASE("the measured values match the true values of the simulation") {
     double position_m = 0, current_A = 0;
     for (std::size_t i = 0; i < recording.size(); ++i) {
       for (const auto& axis : axis_names)

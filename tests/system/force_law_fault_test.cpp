@@ -19,7 +19,7 @@ using protocol::Parameter;
 using protocol::Signal;
 using protocol::State;
 
-TEST_CASE("a force law that divides by zero switches the force off with a fault of its own, and never kicks") {
+TEST_CASE("a force law that divides by zero switches the force off with the fault force_law and produces no kick") {
   BoardRig rig(std::string("quotient.elf"));
   const Parameter divisor = device::parameter_named("quotient_divisor");
   const Parameter dividend = device::parameter_named("quotient_dividend_N");

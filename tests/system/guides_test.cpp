@@ -161,7 +161,7 @@ TEST_CASE("without consent nothing is powered") {
   CHECK(result.err.find("Motor 1 receives 8 pulses") != std::string::npos);
 }
 
-TEST_CASE("a range that is none is wrong usage") {
+TEST_CASE("a reversed angle range is a usage error") {
   const auto result = run_program("inkwell", {"calibrate", "pots", "--virtual", "--yes", "--yaw-range", "2:-2"});
   CHECK(result.exit_code == 2);
   CHECK(result.err.find("is not a range") != std::string::npos);

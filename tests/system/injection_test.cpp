@@ -30,7 +30,7 @@ ProgramResult run_board(std::vector<std::string> arguments) {
 
 }  // namespace
 
-TEST_CASE("a fault put in by the control socket comes at its time, is told, is noticed, and heals") {
+TEST_CASE("a fault from the control socket starts at its time, is listed, is detected and heals") {
   BoardRig rig;
   rig.make_active();
   const double begin_s = rig.board_time_s();

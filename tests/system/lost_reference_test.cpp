@@ -32,7 +32,7 @@ void put_into_inkwell(BoardRig& rig) {
 
 }  // namespace
 
-TEST_CASE("an encoder that jumps is told as that, in whatever part of a control period it does") {
+TEST_CASE("an encoder jump is reported as encoder_implausible at any time within a control period") {
   BoardRig rig;
   constexpr int parts = 6;
   for (int part = 0; part < parts; ++part) {
@@ -64,7 +64,7 @@ TEST_CASE("an encoder that jumps while another fault is told voids the reference
   CHECK(rig.pose().state == State::unreferenced);
 }
 
-TEST_CASE("an inkwell's switch whose wire touches ground is told, and gives no reference before it was open again") {
+TEST_CASE("an inkwell switch with a wire at ground raises a fault and sets no reference until it opens") {
   for (const bool with_force : {false, true}) {
     CAPTURE(with_force);
     BoardRig rig;

@@ -78,8 +78,7 @@ TEST_CASE("a bit that flips in the settings switches the force off, and a reset 
   check_found_and_written_anew({settings + limit, settings + bytes + limit}, 0);
 }
 
-TEST_CASE(
-    "a bit that flips in a parameter switches the force off, although nobody uses it, and a reset writes it anew") {
+TEST_CASE("a bit flip in a parameter that no code reads switches the force off, and a reset restores the parameter") {
   check_found_and_written_anew({held_force_limit()}, 7);
 }
 
@@ -108,7 +107,7 @@ TEST_CASE("a parameter of which a bit has flipped is neither taken over nor stor
   CHECK(rig.device->parameters()[Parameter::force_limit_N] == force_limit_N);
 }
 
-TEST_CASE("a bit that flips in what the next start would give is told, and is not restored") {
+TEST_CASE("a bit flip in the RAM copy of the stored parameters raises a fault, and this copy cannot be restored") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.command(protocol::Command::store_parameters);

@@ -32,7 +32,7 @@ TEST_CASE("a pin shows what the chip puts out, and the chip sees what drives it 
   CHECK(control.drive_pin("PB13", "floating").level == "high");  // pull-up
 }
 
-TEST_CASE("what is no pin, or no level, is refused with a sentence") {
+TEST_CASE("an invalid pin or pin level is refused with a sentence") {
   const device::VirtualBoard board({.elf = build_directory() + "/chip-firmware/input_output.elf", .paused = true});
   auto control = board.control();
   CHECK_THROWS_WITH_AS(control.pin("PA16"), doctest::Contains("\"PA16\" is not a pin"), device::Error);

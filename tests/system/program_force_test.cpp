@@ -110,7 +110,7 @@ TEST_CASE("a huge force is the force limit in its direction, a program that ends
   CHECK(length(end.back().force_N) == 0.0);
 }
 
-TEST_CASE("what the board would refuse is refused with a sentence before it is sent") {
+TEST_CASE("an invalid force or shape is refused with a sentence before it is sent") {
   ProgramRig rig;
   CHECK_THROWS_WITH_AS(rig.device->send_force({.force_N = {std::numeric_limits<float>::quiet_NaN(), 0, 0}}),
                        "The force is nan N on one axis. Give finite numbers.", device::Error);
@@ -153,7 +153,7 @@ TEST_CASE("a program that pushes along with every motion gives the hand no more 
   CHECK(bounded_J < 0.5 * unbounded_J);
 }
 
-TEST_CASE("a program that pushes an arm which nobody holds makes it no faster than it may be") {
+TEST_CASE("without a hand, a program force cannot make the arm faster than the speed limit") {
   const auto fastest_m_per_s = [](float speed_limit_m_per_s) {
     ProgramRig rig;
     rig.set({{Parameter::speed_limit_m_per_s, speed_limit_m_per_s}, {Parameter::power_given_W, 20.0f}});

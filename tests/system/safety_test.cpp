@@ -217,7 +217,7 @@ TEST_CASE("where a bridge tells of a fault meanwhile the arm is not braked any m
   CHECK_FALSE(bridges_enabled(rig.control));
 }
 
-TEST_CASE("a processor fault with the bridges on switches them off first, and is told after the restart") {
+TEST_CASE("a CPU fault switches active bridges off first and is reported after the restart") {
   BoardRig rig(device::SimulationMode::exact);
   press_into_wall(rig);
   constexpr std::uint32_t nothing_there = 0x60000000;

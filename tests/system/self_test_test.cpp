@@ -140,8 +140,7 @@ TEST_CASE("it is over within a thirtieth of a second of the start's own tenth") 
   CHECK(driven_until_s - ready_s < 1.0 / 30);
 }
 
-TEST_CASE(
-    "what nothing else notices is told by its item when the board starts, on command, and goes when it is mended") {
+TEST_CASE("the self-test on command detects each fault that no other check detects, and passes after the repair") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   for (const FaultCase& the_case : silent_faults()) {
@@ -162,7 +161,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the same is told by the start, and no force comes before it is mended") {
+TEST_CASE("the self-test after a reset detects silent faults and blocks the force until they are repaired") {
   BoardRig rig;
   for (const FaultCase& the_case : silent_faults()) {
     if (the_case.of != std::string("1") && the_case.of != std::string("encoders[1].b") &&
@@ -246,7 +245,7 @@ TEST_CASE("stored current limits of nearly nothing keep no sound board from pass
   }
 }
 
-TEST_CASE("a motor with half its turns is told also while all are hot") {
+TEST_CASE("the self-test detects a half-shorted motor even if all motors are hot") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   for (const char* motor : {"1", "2", "3"}) rig.control.inject({.fault = "motor_hot", .of = motor, .amount = 100.0});
@@ -254,7 +253,7 @@ TEST_CASE("a motor with half its turns is told also while all are hot") {
   CHECK(failed(rig.device->self_test()) == std::vector<std::string>{"motor_2"});
 }
 
-TEST_CASE("a hand that shakes the arm is told to hold it, or the test passes; it never fails") {
+TEST_CASE("the self-test of a shaken arm passes or reports motion, and never fails") {
   BoardRig rig;
   rig.take_to(free_point_m);
   rig.control.hand({true, free_point_m, 4000, 30});

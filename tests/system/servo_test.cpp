@@ -121,8 +121,8 @@ device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched,
 }  // namespace
 
 TEST_CASE(
-    "what checks costs the longest control interrupt at most 300 instructions, 420 where the state changes, the "
-    "bounds of the loops' voltages 100") {
+    "in the longest control interrupt, checks execute at most 300 instructions, or 420 with a state change, and "
+    "voltage bounds at most 100") {
   const auto profile = std::filesystem::temp_directory_path() / fmt::format("inkwell-checks-{}", getpid());
   {
     auto options = stepped_board(device::SimulationMode::exact, device::CyclePricing::likely);
@@ -267,7 +267,8 @@ TEST_CASE("a motor that was warm before a restart is as warm after it, but not a
   CHECK(hottest() < 1e-3f);  // heat of the self-test
 }
 
-TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way together, and nothing trips") {
+TEST_CASE(
+    "an overloaded motor gets less current, all three currents are scaled down together, and no fault is raised") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);

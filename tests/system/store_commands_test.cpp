@@ -76,7 +76,7 @@ TEST_CASE("values last until the board's power goes, unless they are stored") {
   CHECK(board.stiffness() == 600);
 }
 
-TEST_CASE("what is not stored is marked, counted and listed with the value that is") {
+TEST_CASE("values that differ from the stored values are marked, counted and listed with the stored value") {
   RememberingBoard board;
   CHECK(board.run({"parameters"}).out.find("After the next start, the board has the same parameter values") !=
         std::string::npos);
@@ -181,7 +181,7 @@ TEST_CASE("a virtual board of one command remembers in a file what was stored") 
   CHECK(again.err.find("`inkwell parameters store`") == std::string::npos);
 }
 
-TEST_CASE("values that a virtual board of one command would lose are told of, and kept if they are stored at once") {
+TEST_CASE("values that a virtual board of one command would lose are reported, and --store saves them") {
   const TemporaryDirectory directory;
   const std::string flash = directory.file("flash.bin");
   const auto run = [&](std::vector<std::string> words) {

@@ -67,8 +67,7 @@ TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it aw
     }
 }
 
-TEST_CASE(
-    "slow motion at the usual force limit: pressed into a wall, let go and pressed again, a stuck encoder is told") {
+TEST_CASE("a stuck encoder is detected during slow motion into and out of a wall at the usual force limit") {
   for (const bool healthy : {true, false}) {
     CAPTURE(healthy);
     BoardRig rig;

@@ -42,7 +42,7 @@ TEST_CASE("a UART on standard input and output") {
   CHECK(board.read_line() == "HELLO, BOARD");
 }
 
-TEST_CASE("a UART on a terminal of its own, which goes with the board") {
+TEST_CASE("a UART has a separate terminal, and the terminal disappears with the board") {
   const TemporaryDirectory directory;
   const auto path = directory / "uart";
   {
@@ -77,7 +77,7 @@ TEST_CASE("a UART on a socket") {
   ::close(socket);
 }
 
-TEST_CASE("what is no UART, no pin or no file is said") {
+TEST_CASE("an invalid UART, pin or file is refused") {
   const auto said = [](std::initializer_list<std::string> options) {
     std::vector<std::string> arguments{"--elf", build_directory() + "/chip-firmware/echo.elf", "--seconds", "0.001"};
     arguments.insert(arguments.end(), options);

@@ -26,7 +26,7 @@ void plug_in(WindowRig& rig, const std::string& state = "ready") {
 
 }  // namespace
 
-TEST_CASE("an unplugged device is told, and it is connected again by itself") {
+TEST_CASE("an unplugged device is reported and connects again automatically") {
   WindowRig rig;
   rig.switch_force_on();
   unplug(rig);

@@ -55,7 +55,7 @@ TEST_CASE("while the sphere moves and the plots scroll, the pane beside them is 
   CHECK(least < 0.8);  // the pane column, a quarter of the window, is not redrawn
 }
 
-TEST_CASE("what was drawn in parts looks as if it were drawn as a whole") {
+TEST_CASE("a window that was drawn in parts looks like a complete drawing") {
   WindowRig rig({"--layout", "contact"});
   const auto sphere = rig.look().item("scene/sphere").centre();
   rig.drag(sphere, {sphere.x + 60, sphere.y - 40});

@@ -55,7 +55,7 @@ std::size_t count_in(WindowRig& rig) { return rig.control.status().all.at("injec
 
 }  // namespace
 
-TEST_CASE("a fault is chosen in the table, put in, told with what the board noticed, and healed") {
+TEST_CASE("a fault is chosen in the table, injected, shown with the reported fault, and healed") {
   WindowRig rig;
   open_pane(rig);
   CHECK(rig.look().says("SIMULATION"));
@@ -111,7 +111,7 @@ TEST_CASE("the pane is worked by the keyboard alone") {
   CHECK(count_in(rig) == 0);
 }
 
-TEST_CASE("what the board refuses, or is no number, is told in a sentence") {
+TEST_CASE("a refused injection or an invalid number is reported in a sentence") {
   WindowRig rig;
   open_pane(rig);
   rig.enter("faults/search", "motor_hot");
@@ -133,7 +133,7 @@ TEST_CASE("what the board refuses, or is no number, is told in a sentence") {
   CHECK_FALSE(rig.look().says("is outside"));
 }
 
-TEST_CASE("what another program puts in and heals is seen, also what is still to come") {
+TEST_CASE("the pane shows the planned, active and healed faults of another program") {
   WindowRig rig;
   open_pane(rig);
   rig.control.pause();

@@ -120,7 +120,8 @@ TEST_CASE("a pose is at most three USB frames of board time old when it can be d
   CHECK(ages[ages.size() / 2] <= 3 * periods_per_usb_frame);  // request, transmission and transfer to the window
 }
 
-TEST_CASE("a parameter file loaded in the window is what the device then holds, and unknown names are told") {
+TEST_CASE(
+    "a parameter file that is loaded in the window sets the values of the device, and unknown names are reported") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("honey.toml");
   std::ofstream(file) << "[parameters]\nwall_damping_Ns_per_m = 3.5\nforce_limit_N = 2.25\nstickiness_N = 1.0\n";
@@ -137,7 +138,7 @@ TEST_CASE("a parameter file loaded in the window is what the device then holds, 
   CHECK(rig.close_and_read_parameters() == expected);
 }
 
-TEST_CASE("a damaged parameter file is told, and the device keeps its values") {
+TEST_CASE("a damaged parameter file is reported, and the device retains its values") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("damaged.toml");
   std::ofstream(file) << "[parameters]\nwall_damping_Ns_per_m = 3.\nforce_limit_N = = 2\n";

@@ -91,7 +91,7 @@ TEST_CASE("every number of Tuning is reached by the arrow, typed and sent") {
   CHECK(rig.close_and_read_parameters()[protocol::Parameter::wall_damping_Ns_per_m] == doctest::Approx(1.5));
 }
 
-TEST_CASE("a signal gets a plot of its own by Enter") {
+TEST_CASE("Enter in the signal list adds a plot for the selected signal") {
   WindowRig rig({"--layout", "contact"});
   go_to_part(rig, "scope");
   go_to(rig, "Right", "scope/Signals", 12);

@@ -99,7 +99,7 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   rig.wait_until("the position is another", [&](const Sight& now) { return position(now) != at_the_end; });
 }
 
-TEST_CASE("two recordings of the same name in the window are told apart by their folders") {
+TEST_CASE("the window shows the folders of two recordings with the same name") {
   const TemporaryDirectory directory;
   const std::string monday = directory.file("monday/push.csv"), tuesday = directory.file("tuesday/push.csv");
   write_swing(monday, 3);

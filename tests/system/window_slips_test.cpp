@@ -85,7 +85,7 @@ TEST_CASE("Escape gives back the value that was there, sends nothing, and switch
   CHECK(stiffness_held_at_the_end(rig) == stiffness_at_start);
 }
 
-TEST_CASE("what is no number, or out of range, leaves the old value and is told") {
+TEST_CASE("an invalid or out-of-range number is reported and leaves the old value") {
   WindowRig rig;
   const std::vector<std::pair<std::string, std::string>> slips{
       {"1,35", "with a decimal point and without commas"},
@@ -256,7 +256,7 @@ TEST_CASE("a banner that comes while the mouse drags moves nothing before the mo
   rig.wait_until("there is room for it", [&](const Sight& now) { return now.item("scene/view").y > view.y + 20; });
 }
 
-TEST_CASE("what the proxy is, is told where it is drawn") {
+TEST_CASE("the scene explains the proxy under the mouse pointer") {
   WindowRig rig;
   const auto sight = rig.look();
   const auto right = sight.item("scene/box_maximum_x_m").centre(), sphere = sight.item("scene/sphere").centre();

@@ -32,7 +32,7 @@ void change_stiffness(WindowRig& rig, const std::string& value) {
 
 }  // namespace
 
-TEST_CASE("what happens is logged, saved as text, and noted in a recording at the board's own period") {
+TEST_CASE("events are logged, saved as text, and marked in the recording at the control period of the board") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("push.h5");
   WindowRig rig;

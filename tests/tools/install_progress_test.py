@@ -61,7 +61,7 @@ class Install(unittest.TestCase):
             done.logs = {str(path): path.read_text() for path in folder.glob("*.log")}
             return done
 
-    def test_progress_is_told(self):
+    def test_progress_is_printed(self):
         done = self.run_install("exit 0")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("Installing 1 Debian packages", done.stdout)
@@ -74,7 +74,7 @@ class Install(unittest.TestCase):
         self.assertIn("Setting up libnowhere", done.stderr)
         self.assertNotIn("I/O error", done.stderr)
 
-    def test_a_failure_is_told_in_apts_words(self):
+    def test_a_failure_is_reported_with_the_error_of_apt(self):
         done = self.run_install("echo 'E: no such package' >&2; exit 100")
         self.assertEqual(done.returncode, 1)
         self.assertIn("E: no such package", done.stderr)
@@ -86,7 +86,7 @@ class Install(unittest.TestCase):
         self.assertIn(path, done.stderr)
         self.assertIn("no such package", text)
 
-    def test_what_dpkg_left_is_configured_once_more(self):
+    def test_packages_that_dpkg_left_unconfigured_are_configured_again(self):
         for mended in ({"configure": "echo installed >packages/libnowhere"}, {"fix": "echo installed >packages/libnowhere"}):
             done = self.run_install(UNPACKED, **mended)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -96,14 +96,14 @@ class Install(unittest.TestCase):
             self.assertIn(f"trying once more; the log is {path}", done.stdout)
             self.assertIn("E: Errors were encountered", text)
 
-    def test_what_was_not_reached_before_is_installed_then(self):
+    def test_packages_that_were_not_reached_are_installed_afterwards(self):
         first = "if [ -e packages/libfirst ]; then echo installed >packages/libnowhere; exit 0; fi"
         done = self.run_install(
             f"{first}; echo half-configured >packages/libfirst; exit 100", fix="echo installed >packages/libfirst"
         )
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def test_what_cannot_be_configured_is_named_without_blaming_the_network(self):
+    def test_packages_that_cannot_be_configured_are_named_without_a_network_error(self):
         done = self.run_install(UNPACKED)
         self.assertEqual(done.returncode, 1)
         self.assertIn("could not be configured: libnowhere\n", done.stderr)

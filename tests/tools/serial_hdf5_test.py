@@ -46,7 +46,7 @@ class SerialHdf5(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stdout, "chosen: .*/include-hdf5-serial\n")
 
-    def test_one_without_a_name_of_its_own_is_accepted(self):
+    def test_a_library_without_the_serial_name_is_accepted(self):
         result = self.configure({"hdf5": False})
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stdout, "chosen: .*/include-hdf5\n")

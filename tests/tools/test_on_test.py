@@ -64,7 +64,7 @@ class TestOn(unittest.TestCase):
         self.assertIn("The trial of demo on bookworm failed.", done.stderr)
         self.assertNotIn("passed", done.stdout)
 
-    def test_what_is_missing_is_named(self):
+    def test_a_missing_program_is_named(self):
         done = self.run_test_on("bookworm")
         self.assertEqual(done.returncode, 1)
         self.assertIn("mmdebstrap is not installed", done.stderr)

@@ -53,7 +53,7 @@ class Refusals(unittest.TestCase):
         division = self.cycles('extern "C" float step_force_law(float x) { return 2.0f / x; }')
         self.assertGreaterEqual(division - plain, 10)
 
-    def test_what_is_called_is_priced_each_time(self):
+    def test_each_call_of_a_function_is_priced(self):
         other = "[[gnu::noipa]] float other(float x) { return x / 3.1f; }\n"
         once = self.cycles(other + 'extern "C" float step_force_law(float x) { return 1.0f + other(x); }')
         twice = self.cycles(other + 'extern "C" float step_force_law(float x) { return other(x) + other(1.0f); }')
