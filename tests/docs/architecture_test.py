@@ -106,14 +106,14 @@ class Differences(unittest.TestCase):
         self.tree.private["host/window/scope"] = self.tree.includes["host/window/scope"]
         self.assertEqual([], self.differences(self.TABLE + "| `host/window/scope/` | - | window | - |\n"))
 
-    def test_folder_without_target_includes_what_its_library_may_not(self):
+    def test_a_folder_without_target_must_not_include_more_than_its_library(self):
         self.tree.folders.add("firmware/control/stages")
         line = 'stage.cpp: #include "host/window/window.hpp"'
         self.tree.includes["firmware/control/stages"] = {"host/window": line}
         self.assertEqual([f"{line}: firmware/control/stages/ has no target that links to one of host/window/"],
                          self.differences(self.TABLE + "| `firmware/control/stages/` | - | window | - |\n"))
 
-    def test_folder_without_target_uses_what_it_includes(self):
+    def test_the_row_of_a_folder_without_target_names_its_includes(self):
         self.tree.folders.add("host/window/scope")
         self.tree.includes["host/window/scope"] = {"host/window": 'scope.cpp: #include "host/window/window.hpp"'}
         self.assertEqual([], self.differences(self.TABLE + "| `host/window/scope/` | - | window | - |\n"))

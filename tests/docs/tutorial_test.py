@@ -69,7 +69,7 @@ class Tutorial(unittest.TestCase):
             time.sleep(0.1)
         return board
 
-    def test_the_experiment_finds_what_the_page_says(self):
+    def test_the_experiment_prints_the_results_of_the_page(self):
         text = part("Measure the wall")
         [command] = typed_lines(text)
         found = [" ".join(line.split()) for line in self.type(command).splitlines()]
@@ -85,7 +85,7 @@ class Tutorial(unittest.TestCase):
                              timeout=PATIENCE_S)
         self.assertEqual(run.stdout.strip(), re.search(r"prints (\d+ N/m)", text)[1], run.stderr)
 
-    def test_the_board_keeps_what_is_stored(self):
+    def test_the_board_retains_stored_parameters(self):
         port = free_port()
         text = part("Store the parameters")
         board_line, *commands = typed_lines(text)

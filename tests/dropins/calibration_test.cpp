@@ -18,7 +18,7 @@ device::Pose read_until(device::Device& device, Condition condition) {
     if (const auto pose = device.read_pose(60s); pose && condition(*pose)) return *pose;
 }
 
-TEST_CASE("an arm that a program finds in a fault knows where it is, if nothing says that counts were lost") {
+TEST_CASE("an arm with a fault that does not affect its encoders is calibrated when a program opens it") {
   Board board;
   forget_errors();
   const auto driver = device::Device::open(*board.board.find());

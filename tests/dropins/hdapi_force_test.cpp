@@ -13,7 +13,7 @@
 namespace inkwell::tests {
 namespace {
 
-TEST_CASE("a force pulls the hand, as much and where it says; a joint torque too; motor values beside it do not") {
+TEST_CASE("a program force or joint torque pulls the hand, and motor values cause a force error") {
   Held held;
   const double ramp_N_per_s[]{100};
   std::array<double, 3> sent_N{};
@@ -244,7 +244,7 @@ TEST_CASE("another program's stop is reported once, and the force stays off unti
   CHECK(held.pulls(0, 0.0028, 0.0038, push));
 }
 
-TEST_CASE("frames as fast as a program can make them, beside a thread that asks") {
+TEST_CASE("a program runs frames as fast as possible while another thread calls HDAPI") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   std::atomic<bool> ends = false;

@@ -40,7 +40,8 @@ TEST_CASE("a frame may begin in one callback and end in another of the same tick
     CHECK(error == HD_ILLEGAL_BEGIN);  // the first callback may have been left over
 }
 
-TEST_CASE("the scheduler: order, waiting, taking out, and what is called by the servo thread itself") {
+TEST_CASE(
+    "the scheduler runs tasks in order, waits for tasks, removes tasks, and accepts calls from the servo thread") {
   Held held;
   static std::vector<int> order;
   order.clear();

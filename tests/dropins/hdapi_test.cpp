@@ -13,7 +13,7 @@
 namespace inkwell::tests {
 namespace {
 
-TEST_CASE("before a device is open: the version, and errors that say what is missing") {
+TEST_CASE("without an open device, the version is available, and other calls set an error") {
   forget_errors();
   CHECK(std::string(hdGetString(HD_VERSION)).size() > 2);
   CHECK(only_error() == HD_SUCCESS);
@@ -42,7 +42,7 @@ TEST_CASE("before a device is open: the version, and errors that say what is mis
   unsetenv("INKWELL_DEVICE");
 }
 
-TEST_CASE("a device that does not know where it is tells so, and gives no force until it was in the inkwell") {
+TEST_CASE("an unreferenced device reports its calibration state and outputs no force before it rests in the inkwell") {
   Board board({.paused = true});
   forget_errors();
   const HHD device = hdInitDevice(nullptr);
@@ -70,7 +70,7 @@ TEST_CASE("a device that does not know where it is tells so, and gives no force 
   hdDisableDevice(device);
 }
 
-TEST_CASE("a device of another version of the protocol is not opened, and the text tells the versions") {
+TEST_CASE("a device with another protocol version is not opened, and the error contains the versions") {
   Board board(next_protocol);
   forget_errors();
   CHECK(hdInitDevice(nullptr) == HD_INVALID_HANDLE);

@@ -63,7 +63,8 @@ TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and 
         doctest::Approx(1.0 / hand_N_per_m).scale(0).epsilon(0.2));
 }
 
-TEST_CASE("`inkwell run` gives the program a virtual board, tells which, and ends as the program does") {
+TEST_CASE(
+    "`inkwell run` starts a virtual board for the program, reports the arm, and exits with the code of the program") {
   const auto run = run_program("inkwell", {"run", "--virtual", program("drop-in-as-chai3d")});
   INFO(run.out, run.err);
   CHECK(run.exit_code == 0);

@@ -18,7 +18,7 @@ struct Measured : ChipUnderTest {
 }  // namespace
 
 TEST_SUITE("virtual chip: cycles") {
-  TEST_CASE("32 repetitions cost what the manuals say where memory does not wait") {
+  TEST_CASE("instructions take the cycles of the manuals if the memory has no wait states") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       const Measured test(mode);
@@ -61,7 +61,7 @@ TEST_SUITE("virtual chip: cycles") {
     }
   }
 
-  TEST_CASE("flash that waits: nothing helps, prefetch helps, the cache helps what fits") {
+  TEST_CASE("prefetch reduces the flash wait, and the cache removes the wait for code that fits") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       const Measured test(mode);

@@ -41,7 +41,7 @@ struct SlowChip {
 }  // namespace
 
 TEST_SUITE("virtual board: chip") {
-  TEST_CASE("the flash takes its time to erase and program; code in RAM goes on, what wants the flash waits") {
+  TEST_CASE("during flash erase and programming, code in RAM continues, and each access to the flash waits") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("flash_times", mode);

@@ -37,7 +37,7 @@ TEST_CASE("an exception is late by the injected delay in each period until the d
   }
 }
 
-TEST_CASE("a pin that touches something is at its level, whatever the chip drives it with") {
+TEST_CASE("a shorted pin has the level of the short, whatever the chip drives") {
   ChipUnderTest test("converters");  // toggles B2
   std::array<unsigned, 3> seen{};
   const auto look = [&] {
@@ -106,7 +106,7 @@ TEST_CASE("flip_bit inverts a RAM bit at each call and returns false for an addr
   CHECK_FALSE(test.chip.flip_bit(0x6000'0000, 0));
 }
 
-TEST_CASE("a bit of the flash turns over, and the core runs what stands there then though it ran it before") {
+TEST_CASE("after a flash bit flips, the core executes the changed code, although it executed the old code before") {
   for (const Mode mode : {Mode::exact, Mode::fast}) {
     CAPTURE(static_cast<int>(mode));
     ChipUnderTest test("converters", mode);

@@ -88,7 +88,8 @@ TEST_SUITE("virtual chip: memory protection") {
     }
   }
 
-  TEST_CASE("room for floats is noted with what was interrupted, and which faults could come then") {
+  TEST_CASE(
+      "lazy floating-point stacking records the interrupted context and the faults that were possible at that time") {
     constexpr std::uint32_t due = 0xC000'0001, user = 0x002, thread = 0x008, hard = 0x010, memory = 0x020, bus = 0x040,
                             monitor = 0x100, behind_frame = 0x20;
     for (const Mode mode : {Mode::exact, Mode::fast}) {

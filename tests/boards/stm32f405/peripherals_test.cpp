@@ -130,7 +130,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(at_once == 3);
   }
 
-  TEST_CASE("regular conversions fill a ring by DMA beside them") {
+  TEST_CASE("DMA writes regular conversions to a ring buffer while injected conversions run") {
     ChipUnderTest test("converters");
     test.circuit.voltages = {{{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
     test.run_for(0.003);
@@ -293,7 +293,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
   }
 
-  TEST_CASE("with nothing connected, what drivers wait for comes, or their errors do") {
+  TEST_CASE("without a connected device, each peripheral sets the flags or errors that drivers wait for") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("unconnected", mode);
@@ -328,7 +328,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
   }
 
-  TEST_CASE("a CAN controller in loop-back hears what its filters let through") {
+  TEST_CASE("a CAN controller in loop-back receives the frames that its filters accept") {
     ChipUnderTest test("can_loop");
     test.run_for(0.1);
     REQUIRE(test.result(0) == finished);

@@ -194,7 +194,7 @@ TEST_SUITE("virtual chip: processor") {
     }
   }
 
-  TEST_CASE("code in RAM that is written anew runs anew") {
+  TEST_CASE("the core executes the new code after code in RAM is rewritten") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("code_in_ram", mode);
@@ -225,7 +225,7 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(other.chip.state_hash() != hashes[0]);
   }
 
-  TEST_CASE("the watchdog resets the chip once, and says so") {
+  TEST_CASE("the watchdog resets the chip once and sets its reset flag") {
     ChipUnderTest test("watchdog");
     std::vector<std::pair<ResetCause, Ticks>> resets;
     test.chip.on_reset = [&](ResetCause cause) { resets.emplace_back(cause, test.chip.now()); };

@@ -107,7 +107,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
     }
   }
 
-  TEST_CASE("fast mode sees them too, but for what takes the distance of two accesses") {
+  TEST_CASE("fast mode detects the same violations, except those that depend on the distance between two accesses") {
     for (const Case& planted : cases) {
       if (planted.rule == Rule::clock_fresh) continue;
       CAPTURE(info(planted.rule).name);
@@ -141,7 +141,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
       CHECK((faulty.test.result(5) & 0xFF00) != 0);
       CHECK(faulty.test.result(0) != finished);
     }
-    SUBCASE("too few wait states: what is read from the flash is no instruction") {
+    SUBCASE("with too few wait states, the core reads wrong instructions and locks up") {
       for (const Mode mode : {Mode::exact, Mode::fast}) {
         Planted faulty(16, mode);
         CHECK(faulty.test.result(0) != finished);

@@ -48,7 +48,7 @@ TEST_CASE("from power-up through the inkwell to force, with the bridges off unti
   CHECK(controller.periods() == 4'312);
 }
 
-TEST_CASE("the reference is where the stylus was in the inkwell, whatever the counts were") {
+TEST_CASE("the encoders are referenced in the inkwell for any initial counts") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::started_controller(settings);
   Samples samples = tests::samples_at_rest();

@@ -109,7 +109,7 @@ TEST_CASE("currents while a brake shorts the motors are no drift") {
   CHECK(controller.state() == State::ready);
 }
 
-TEST_CASE("a reading near a rail of its sensor is an over-current whatever offset and current limit are") {
+TEST_CASE("a reading near the rail of a current sensor raises over_current for every offset and current limit") {
   Settings settings = settings_near_wall();
   settings.limits.over_current_A.fill(100.0f);
   for (const float offset_A : {-0.2f, 0.0f, 0.2f})

@@ -112,7 +112,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a probe beyond its speed limit is let go") {
+TEST_CASE("a probe above its speed limit raises over_speed and switches the force off") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();

@@ -302,7 +302,7 @@ TEST_CASE("a wall that went while no force was allowed is not felt when one is")
   CHECK(arm.force_N().z == 0.0f);
 }
 
-TEST_CASE("of a force that was cut to its limit only what was felt is got over") {
+TEST_CASE("after a force above the limit disappears, only the limited force is blended out") {
   StillArm arm;
   arm.change(Parameter::box_minimum_z_m, arm.parameters[Parameter::box_minimum_z_m] + 0.03f);  // 31 N
   arm.run(6'000);

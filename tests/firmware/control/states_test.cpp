@@ -90,7 +90,7 @@ TEST_CASE("after disable_force, the force falls to zero within soft_landing_s, a
   CHECK_FALSE(tests::run(controller, samples, pushed, 2).enabled);  // rounding may add one period
   CHECK(controller.state() == State::ready);
 
-  SUBCASE("a stop in its middle takes away what is left") {
+  SUBCASE("a stop during the landing switches the force off immediately") {
     controller.carry_out(tests::command(Command::enable_force));
     tests::run(controller, samples, pushed, 2 * ramp_periods);
     controller.carry_out(tests::command(Command::disable_force));
@@ -174,7 +174,8 @@ TEST_CASE("an arm whose host fell silent is braked gently: not in a period in wh
 }
 
 TEST_CASE(
-    "an arm whose USB goes away under a force tells so and is braked; without one, or as it falls, it only stops") {
+    "a USB loss under a force raises a fault and brakes the arm, and without a force or during a landing only stops "
+    "it") {
   protocol::ParameterSet set = parameters();
   set[wall_stiffness_N_per_m] = set[wall_damping_Ns_per_m] = 0.0f;
   set[soft_landing_s] = 0.1f;

@@ -60,7 +60,7 @@ double held_N(const control::Jacobian& jacobian, std::size_t motor, double torqu
   return std::fabs(torque_Nm / determinant) * std::hypot(across[0], across[1], across[2]);
 }
 
-TEST_CASE("a test pulse of current makes no more force at the hand than force_limit_N, whatever the arm and its pose") {
+TEST_CASE("the force of a current test pulse never exceeds force_limit_N, for every arm and pose") {
   constexpr double limit_N = 0.8;
   tests::Random random(7);
   for (const tests::Arm& arm : tests::all_arms()) {
@@ -92,8 +92,7 @@ TEST_CASE("a test pulse of current makes no more force at the hand than force_li
   }
 }
 
-TEST_CASE(
-    "a test pulse of voltage stops driving where its current would make too large a force, whatever the resistance") {
+TEST_CASE("a voltage test pulse is limited where its current would exceed the force limit, for every resistance") {
   using arm_defaults::motor::inductance_H;
   for (const auto& [resistance_ohm, amplitude_V] : {std::pair(0.4f, 2.0f), {2.0f, 8.0f}, {40.0f, 8.0f}}) {
     CAPTURE(resistance_ohm);
@@ -143,7 +142,7 @@ TEST_CASE("a test pulse of current is the loop's: where the current is there it 
   for (const float duty : drive.duty) CHECK(duty == doctest::Approx(0.0));
 }
 
-TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
+TEST_CASE("a voltage test pulse sets the duty cycle regardless of the current") {
   const Settings settings = control::prepare(tests::paper_parameters());
   Controller controller = tests::ready_controller(settings);
   Samples samples = tests::samples_at_rest();

@@ -64,7 +64,7 @@ class Claims(unittest.TestCase):
         for sentence in sentences:
             self.assertIn(sentence, complaint)
 
-    def test_a_driver_of_what_is_free_compiles(self):
+    def test_a_driver_of_unclaimed_hardware_compiles(self):
         start = "DigitalOutput<Newcomer, board::Pin{'C', 13}>::start(); start_clock_of_stream<Newcomer, registers::DMA2, 1>();" \
                 "RegistersOfStream<Newcomer, registers::DMA2, 1>::LISR::read();"
         self.assertEqual("", self.compile(f"{FREE_PIN}, stream<registers::DMA2, 1>()", start))
@@ -96,7 +96,7 @@ class Claims(unittest.TestCase):
             with self.subTest(start):
                 self.assert_refused(self.compile(FREE_PIN, start), UNCLAIMED)
 
-    def test_the_name_of_what_drivers_claim_gives_no_registers(self):
+    def test_the_claim_names_give_no_access_to_registers(self):
         self.assert_refused(self.compile(FREE_PIN, "registers::TIM3::CNT::read();"),
                             "registers::TIM3::CNT", "has not been declared")
 

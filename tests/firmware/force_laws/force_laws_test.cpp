@@ -56,7 +56,7 @@ TEST_CASE("a magnet pulls most at its reach, not at all where it is, and pushes 
   CHECK(law.step().y > 0.0f);
 }
 
-TEST_CASE("the walls of the box are felt beside a law that keeps them") {
+TEST_CASE("a force law that uses the box walls adds the wall force") {
   Stepped<magnet> law;
   law.probe.position_m = {law.parameters.x_m, law.parameters.y_m, law.parameters.z_m};
   law.probe.contact.penetration_m = {0.001f, 0.0f, 0.0f};
@@ -101,7 +101,7 @@ TEST_CASE("a dial counts its notches there and back, and pulls to the middle of 
   CHECK(law.step() == Vector3{});
 }
 
-TEST_CASE("generated C code keeps its state: the mass swings, comes to rest at the probe, and starts there anew") {
+TEST_CASE("generated C code retains its state: the virtual mass swings and comes to rest at the probe") {
   Stepped<virtual_mass> law;
   law.probe.position_m = {0.01f, 0.02f, 0.03f};
   CHECK(law.step() == Vector3{});

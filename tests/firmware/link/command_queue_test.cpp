@@ -116,7 +116,7 @@ TEST_CASE("commands come out in order, one a period, and their tokens with them"
   }
 }
 
-TEST_CASE("a full queue refuses, keeps what it has and still notes the sign of life") {
+TEST_CASE("a full queue refuses a command, retains the queued commands and records the sign of life") {
   CommandQueue queue;
   for (std::uint32_t i = 0; i < CommandQueue::capacity; ++i)
     CHECK(queue.push(make(Command::heartbeat, static_cast<std::uint8_t>(i))));

@@ -151,7 +151,7 @@ TEST_CASE("a fault soon after the start has fewer rows before it") {
   CHECK(at_once.periods() == Periods{0, 20, 40, 60});
 }
 
-TEST_CASE("a black box stays, whatever comes, until the force is switched on") {
+TEST_CASE("a black box is retained until the force is switched on") {
   Board board;
   meet_fault(board);
   board.run(500, State::ready);
@@ -242,7 +242,7 @@ TEST_CASE("a reset while a black box is being filled leaves it as far as it got"
   CHECK(board.periods() == Periods{920, 940, 960, 980, 1000, 1007, 1027});
 }
 
-TEST_CASE("a run that crashed leaves its last rows, and what the processor noted") {
+TEST_CASE("a crash leaves the last rows of the run and the facts of the processor in the black box") {
   Board board;
   board.run(1007, State::active);
   board.start(Fault::processor_fault, crash);
@@ -309,7 +309,7 @@ TEST_CASE("a crash while a row is written costs that row") {
   CHECK(board.periods() == Periods{940, 960, 980, 1000});
 }
 
-TEST_CASE("a reset without a fault begins anew") {
+TEST_CASE("a reset without a fault restarts the black box") {
   Board board;
   board.run(1007, State::active);
   board.start();

@@ -231,7 +231,7 @@ TEST_CASE("without a reader, the recorder drops and counts the oldest frames, bu
   CHECK(scope.samples_dropped() == dropped);
 }
 
-TEST_CASE("a frame that is being sent stays as it is, whatever is recorded meanwhile") {
+TEST_CASE("new recordings do not change a frame that is being sent") {
   link::Link& fresh = test::fresh_link();
   link::ScopeRecorder& scope = fresh.scope;
   scope.select(select(31), 4);

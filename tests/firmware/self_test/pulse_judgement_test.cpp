@@ -57,7 +57,7 @@ bool all_pass(const PulseJudgement& judgement) {
   return pass;
 }
 
-TEST_CASE("sound motors pass, with their resistance, what the bridge takes, and no current in others' sensors") {
+TEST_CASE("healthy motors pass with the right resistance, the right bridge loss and no current in other sensors") {
   Bench bench;
   const PulseJudgement judgement = bench.judgement();
   CHECK(all_pass(judgement));
@@ -167,7 +167,7 @@ TEST_CASE("a doubled dead time fails the bridge item of the self-test, and this 
   CHECK_FALSE(info(protocol::SelfTestItem::bridge_2).takes_force);
 }
 
-TEST_CASE("a bridge is known to take what was measured, with brushes also more than its dead time does") {
+TEST_CASE("the bridge loss is the measured value, both below and above the nominal value") {
   const auto half = with_second([](auto& motor) { motor.dead_V *= 0.5f; });
   CHECK(half.bridge_loss_part[1] == doctest::Approx(0.012).scale(0).epsilon(0.04));
   const auto more = with_second([](auto& motor) { motor.dead_V *= 1.5f; });

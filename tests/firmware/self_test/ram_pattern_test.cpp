@@ -48,7 +48,7 @@ TEST_CASE("a bit that stands still is found, whichever, high or low, first word 
     }
 }
 
-TEST_CASE("a write that disturbs a neighbour is found, before it or behind it") {
+TEST_CASE("the RAM test detects a write that changes the previous or the next word") {
   CHECK_FALSE(is_intact_with([](Memory& memory) { memory[1].disturbs = &memory[2]; }));
   CHECK_FALSE(is_intact_with([](Memory& memory) { memory[2].disturbs = &memory[1]; }));
 }

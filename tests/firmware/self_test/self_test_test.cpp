@@ -37,7 +37,9 @@ TEST_CASE("a sound board tests itself once after its start, in less than 20 ms, 
   CHECK(board.controller.state() == State::unreferenced);
 }
 
-TEST_CASE("on command it tests anew, from unreferenced and ready, and comes back; not while the force is on") {
+TEST_CASE(
+    "a self-test on command runs in the states unreferenced and ready, returns to them, and is refused while the force "
+    "is on") {
   Board board;
   board.run_while(State::starting);
   board.run_while(State::testing);
@@ -101,7 +103,7 @@ TEST_CASE("a failure that does not repeat in the next round is ignored") {
   CHECK(board.controller.state() == State::unreferenced);
 }
 
-TEST_CASE("an arm that moves all the time is given up, says so, and loses no force") {
+TEST_CASE("a self-test of an arm that always moves stops with the result moved and raises no fault") {
   Board board;
   board.motors.motors[0].is_open = true;
   board.run_while(State::starting);
@@ -200,7 +202,7 @@ TEST_CASE("a wrong analog supply raises self_test_failed, and its voltage is rep
   CHECK(board.figure(SelfTestItem::analog_supply) == 3.0f);
 }
 
-TEST_CASE("without a supply there are no pulses, the items say so, and the test is made once there is one") {
+TEST_CASE("without a supply the self-test skips its pulses, reports this, and runs when a supply is present") {
   Board board;
   board.samples.supply_V = 0.0f;
   board.run_while(State::starting);
@@ -320,7 +322,7 @@ TEST_CASE("after a fault aborts a self-test, its pulse order does not start puls
   CHECK(board.controller.state() == State::unreferenced);
 }
 
-TEST_CASE("a main loop that misses the fault between two tests begins the second one anew") {
+TEST_CASE("the second of two self-tests starts again if the main loop missed the fault between them") {
   Board board;
   board.run_while(State::starting);
   while (board.driven_periods < 130) board.run(1);

@@ -268,7 +268,7 @@ TEST_CASE("store: every start leaves room, at most one sector is erased at a sta
   CHECK(flash.overwritten == 0);
 }
 
-TEST_CASE("store: what stands where the next record may have to go is erased at the start, and counted") {
+TEST_CASE("store: data at the position of the next record is erased at start-up and counted") {
   FakeFlash flash;
   flash.sectors[1][25] = 0xFFFF'FF00;
   const FlashLog log = started(flash);

@@ -35,7 +35,7 @@ TEST_SUITE("virtual board: debugger") {
     }
   }
 
-  TEST_CASE("callers are the words in LR and on the stack that point behind a call") {
+  TEST_CASE("callers are the words in LR and on the stack that point to an instruction after a call") {
     std::map<std::uint32_t, std::uint32_t> memory{
         {0x0800'0100, 0xF800'F000},                                                          // BL at 0x08000100
         {0x0800'0200, 0x4798'BF00},                                                          // BLX R3 at 0x08000202

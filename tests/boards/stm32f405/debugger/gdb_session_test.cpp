@@ -47,7 +47,7 @@ std::uint32_t address_of_cpu_fault() {
 }  // namespace
 
 TEST_SUITE("virtual board: debugger") {
-  TEST_CASE("a breakpoint stops before its instruction, a step behind it, and a fault's handler is stepped into") {
+  TEST_CASE("a breakpoint stops before its instruction, a step stops after it, and GDB can step into a fault handler") {
     Debugger gdb("lock_up");
     const std::uint32_t address = address_of_cpu_fault();
     char packet[32];
@@ -72,7 +72,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(gdb.test.chip.run_until(gdb.test.chip.now() + ticks(0.001)) == Stop::locked_up);
   }
 
-  TEST_CASE("GDB mends what would have failed: registers and memory can be written") {
+  TEST_CASE("GDB can write registers and memory to repair a program before it fails") {
     Debugger gdb("lock_up");
     char packet[32];
     std::snprintf(packet, sizeof packet, "Z0,%x,2", static_cast<unsigned>(address_of_cpu_fault()));
@@ -97,7 +97,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(gdb.test.log.empty());
   }
 
-  TEST_CASE("a watch point stops behind the instruction that touches it") {
+  TEST_CASE("a write watch point stops after the instruction that writes to its address") {
     Debugger gdb("lock_up");
     CHECK(gdb.ask("Z2,2001f000,4") == "OK");  // results[0]
     gdb.ask("c");
@@ -137,7 +137,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(gdb.ask("qRcmd," + hexadecimal(std::string_view("dance"))).size() > 20);
   }
 
-  TEST_CASE("GDB learns what the target is, in parts") {
+  TEST_CASE("GDB reads the target description in parts") {
     Debugger gdb("lock_up");
     CHECK(gdb.ask("qSupported:xmlRegisters=arm").find("qXfer:features:read+") != std::string::npos);
     std::string text;

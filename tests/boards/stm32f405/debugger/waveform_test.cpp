@@ -58,7 +58,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(now_ps == 1'000'000'000);
   }
 
-  TEST_CASE("a waveform tells which exception runs") {
+  TEST_CASE("a waveform shows each exception that runs") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       ChipUnderTest test("exceptions", mode);
       const auto lines = lines_of(test, 0.01, {});
@@ -69,7 +69,7 @@ TEST_SUITE("virtual board: debugger") {
     }
   }
 
-  TEST_CASE("a file that cannot be written is said") {
+  TEST_CASE("a waveform file that cannot be written raises an error") {
     ChipUnderTest test("pwm");
     CHECK_THROWS_AS(Waveform("/nowhere/at/all.vcd", {}, test.chip), std::runtime_error);
   }

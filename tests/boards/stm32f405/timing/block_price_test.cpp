@@ -46,7 +46,7 @@ TEST_CASE("an address that the instruction before has computed costs a cycle") {
   CHECK(cycles({load_r0_from_r4, load_r1_from_r0, add_r1}) == 2 + 1 + 2 + 1);  // a pointer chain
 }
 
-TEST_CASE("stores: a cycle, behind a load too; a load behind them waits") {
+TEST_CASE("a store takes one cycle, even after a load, and a load after a store waits") {
   CHECK(cycles({store_r1_to_r5, store_r2_to_r6, add_r0}) == 3);
   CHECK(cycles({load_r0_from_r4, store_r1_to_r5, add_r1}) == 3);
   CHECK(cycles({store_r1_to_r5, load_r0_from_r4, add_r1}) == 5);
@@ -82,7 +82,7 @@ TEST_CASE("IT folds into a narrow instruction before it") {
   CHECK(cycles({0xF100, 0x0001, 0xBF08, 0x2001}) == 3);
 }
 
-TEST_CASE("the FPU: a result that is used at once, multiply-accumulate, division beside the core") {
+TEST_CASE("the cycle count includes FPU latency, multiply-accumulate latency and a division in parallel to the core") {
   // vadd.f32 s0, s1, s2; vmul.f32 s3, s0, s4 / s5
   CHECK(cycles({0xEE30, 0x0A81, 0xEE60, 0x1A02}) == 3);
   CHECK(cycles({0xEE30, 0x0A81, 0xEE62, 0x1A82}) == 2);
@@ -104,7 +104,7 @@ TEST_CASE("a divide costs by the bits of its quotient, between 2 and 12 cycles")
   CHECK(divide_cycles(3, 5, false, conservative) == 12);
 }
 
-TEST_CASE("a block tells which lines of flash it runs through, and when") {
+TEST_CASE("a block records the flash lines that it fetches and the time of each fetch") {
   // Nine 16-bit instructions start at 0x...E. The first instruction is in one flash line, and the next eight
   // instructions are in the next flash line.
   const auto block = price_of({add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0}, start + 14);
@@ -115,7 +115,7 @@ TEST_CASE("a block tells which lines of flash it runs through, and when") {
   CHECK(price_of({add_r0}, 0x2000'0000, likely, CodeMemory::sram).requests.empty());
 }
 
-TEST_CASE("a block tells which data it reads: literals, and tables by their base") {
+TEST_CASE("a block records the addresses of literals and the base registers of table reads") {
   const auto literal = price_of({0x4801, add_r0});  // ldr r0, [pc, #4]
   REQUIRE(literal.requests.size() == 2);
   CHECK(literal.requests[1].is_data);

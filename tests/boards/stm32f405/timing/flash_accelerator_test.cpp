@@ -37,7 +37,8 @@ TEST_CASE("with everything off each other line waits, and the line that was read
   CHECK(flash.fetch(9 * line + 4, 5000) == 0);
 }
 
-TEST_CASE("prefetch hides the wait behind eight cycles of a line, and a part of it behind four") {
+TEST_CASE(
+    "with five wait states, prefetch hides the whole wait for eight instructions per flash line and a part for four") {
   for (const bool narrow : {true, false}) {
     FlashAccelerator flash(flash_bytes, likely);
     flash.set(5, true, false, false);

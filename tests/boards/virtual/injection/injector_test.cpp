@@ -127,7 +127,7 @@ TEST_CASE("a fault comes at its time, to the tick, and goes after its duration")
   CHECK_FALSE(rig.plant.truth(rig.chip.now()).bridge_fault);
 }
 
-TEST_CASE("faults of one kind at one position follow each other, at other positions they stand beside") {
+TEST_CASE("a new wire fault replaces the earlier fault of the same wire, and faults of other wires remain") {
   Rig rig;
   rig.inject("wire_low:PB15");
   rig.inject("wire_high:PB15");

@@ -10,7 +10,7 @@
 using namespace inkwell;
 using namespace inkwell::test;
 
-TEST_CASE("the meter adds up what the arm gives to the hand, and nothing that it takes") {
+TEST_CASE("the hand meter sums the energy from the arm to the hand and ignores the energy from the hand") {
   HandMeter meter;
   CHECK_FALSE(meter.runs());
   meter.start({0.0, 0.0, 0.1}, 7);
@@ -24,7 +24,7 @@ TEST_CASE("the meter adds up what the arm gives to the hand, and nothing that it
   CHECK(meter.reading().lag_m == doctest::Approx(0.03));
 }
 
-TEST_CASE("the plant's meter tells the force and the work of motors on a hand that holds") {
+TEST_CASE("the hand meter of the plant measures the force and the work of the motors on a hand that holds the probe") {
   auto arm = test::frictionless(test::omni());
   arm.simulation.gravity_m_per_s2 = 0.0;
   DrivenPlant driven(arm);

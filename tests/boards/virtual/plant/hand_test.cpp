@@ -68,7 +68,7 @@ TEST_CASE("a firm pull takes the stylus out of the inkwell, a slight one does no
   CHECK((driven.plant.truth(driven.now).position_m - home).norm() > 0.03);
 }
 
-TEST_CASE("an arm that is let go falls onto its stops and rests") {
+TEST_CASE("a released arm falls onto its stops and comes to rest") {
   DrivenPlant driven(test::omni());
   driven.plant.dock(false);
   driven.idle(2.0);

@@ -10,7 +10,7 @@
 using namespace inkwell;
 using namespace inkwell::test;
 
-TEST_CASE("the meter of the motors tells the force of their torques, in the mean over a control period") {
+TEST_CASE("the motor force meter measures the force of the motor torques, averaged over a control period") {
   const Matrix3 jacobian_m = Vector3(0.1, 0.2, 0.05).asDiagonal();
   MotorForceMeter meter;
   meter.start();
@@ -43,7 +43,7 @@ TEST_CASE("the meter of the motors tells the force of their torques, in the mean
   CHECK(meter.peak_N() == doctest::Approx(0.2));
 }
 
-TEST_CASE("the plant's meter tells how hard the bridges have the motors press, with a hand or without one") {
+TEST_CASE("the motor force meter of the plant measures the force of the motors with and without a hand") {
   auto arm = test::frictionless(test::omni());
   arm.simulation.gravity_m_per_s2 = 0.0;
   DrivenPlant driven(arm);

@@ -153,7 +153,8 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
   CHECK(std::abs(hot.torque_Nm[2] / hot.current_A[2]) == doctest::Approx(0.8 * constant));
 }
 
-TEST_CASE("a leg whose upper switch has fused drives the motor until its bridge trips, and trips each time anew") {
+TEST_CASE(
+    "a half bridge with a shorted upper switch drives the motor until the bridge trips, each time it is enabled") {
   auto driven = driven_at({-0.3, 0.0, 0.0});
   CHECK(current_A(driven, 0) < -1.0);
   driven.plant.set_leg_fault(0, 0, LegFault::high);
@@ -217,7 +218,7 @@ TEST_CASE("a leg that never conducts leaves one direction of current only, a slo
         doctest::Approx(lost_V / test::circuit_ohm(test::omni())).scale(0).epsilon(0.4));
 }
 
-TEST_CASE("a supply that fails gives what the fault says, and then again what it was set to") {
+TEST_CASE("a supply fault sets the voltage, and the supply returns to its setting after the fault") {
   DrivenPlant driven(test::omni());
   driven.plant.set_supply_V(20.0);
   driven.plant.fail_supply_at_V(30.0);

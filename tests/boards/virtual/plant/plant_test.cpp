@@ -161,7 +161,7 @@ TEST_CASE("bridges without their enable pin never switch") {
   CHECK(driven.plant.truth(driven.now).current_A.norm() == 0.0);
 }
 
-TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever level it stops at") {
+TEST_CASE("the bridges switch off after the hold time if the heartbeat stops at any level") {
   const Ticks hold = ticks(static_cast<double>(board::omni_driver.bridge_hold_s));
   for (const PinLevel stopped_at : {PinLevel::high, PinLevel::low, PinLevel::floating}) {
     CAPTURE(static_cast<int>(stopped_at));
@@ -207,7 +207,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
   }
 }
 
-TEST_CASE("bridges are let go at the same instant however far the plant is run at once") {
+TEST_CASE("the bridges switch off at the same time for every length of the simulation step") {
   const auto halted = [](Ticks slice) {
     DrivenPlant driven(test::omni());
     driven.plant.dock(false);

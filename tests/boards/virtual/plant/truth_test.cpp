@@ -6,7 +6,7 @@
 
 using namespace inkwell::test;
 
-TEST_CASE("a trace holds its rows in order, gives them once and counts what it drops") {
+TEST_CASE("a trace returns its rows once and in order, and counts the dropped rows") {
   Trace trace;
   Truth truth{};
   trace.record(0, truth);

@@ -19,7 +19,7 @@ namespace {
 
 using virtual_board::SharedClock;
 
-TEST_CASE("a board waits for those that are behind, however long, and for none that has gone") {
+TEST_CASE("a board waits indefinitely for boards with an earlier time, but not for boards that have exited") {
   const TemporaryDirectory directory;
   const auto file = directory / "clock";
   SharedClock first(file);

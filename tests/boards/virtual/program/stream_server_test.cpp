@@ -66,7 +66,7 @@ TEST_SUITE("virtual board: streams") {
     for (const char* begin : {"GET / HTTP/1.1", "POST /", "\x16\x03\x01", "{", "\n"}) CHECK_FALSE(may_be_gdb(begin));
   }
 
-  TEST_CASE("a terminal may send anything but what a browser begins with") {
+  TEST_CASE("may_be_terminal refuses only the start of an HTTP or TLS connection") {
     for (const char* begin : {"", "G", "GET\r", "get /", "P", "hello", "\x16"}) CHECK(may_be_terminal(begin));
     for (const char* begin : {"GET / HTTP/1.1", "POST / HTTP/1.1", "OPTIONS * HTTP/1.1", "\x16\x03\x01\x02"})
       CHECK_FALSE(may_be_terminal(begin));
@@ -86,7 +86,7 @@ TEST_SUITE("virtual board: streams") {
     CHECK(receiver.bytes == "+$g#67");
   }
 
-  TEST_CASE("a client that only listens is not reported, but hears what is sent") {
+  TEST_CASE("a client that sends nothing is not reported as connected, but receives the data") {
     Receiver receiver(&may_be_gdb);
     PlainClient silent(receiver.address());
     int looks = 0;

@@ -14,7 +14,7 @@
 namespace inkwell::virtual_usb_test {
 namespace {
 
-TEST_CASE("the controller reports every 8 ms what the poses say, and costs neither a pose nor a sample") {
+TEST_CASE("the controller report follows the pose every 8 ms, and no pose or sample is lost") {
   using protocol::Signal;
   FirmwareOnBus bus(flashed_image());
   bus.connect();

@@ -228,7 +228,7 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
   }
 }
 
-TEST_CASE("of link register and stack the first eight words that lie behind a call are noted, and no others") {
+TEST_CASE("a crash report contains the first eight return addresses from the link register and the stack") {
   FirmwareOnBus bus(flashed_image());
   bus.run_for(before_self_test_s);  // by this time, the startup code has copied the interrupt code
   const auto behind_bl = [&](std::uint32_t begin) { return address_after(bus, begin, is_bl); };

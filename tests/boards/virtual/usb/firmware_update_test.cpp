@@ -122,7 +122,7 @@ TEST_CASE("the boot loader erases and programs the flash in the flash's own time
   CHECK(bus.violations().empty());
 }
 
-TEST_CASE("the boot loader refuses what it cannot do, says why, and goes on once that is cleared") {
+TEST_CASE("the boot loader refuses an invalid request with a status and continues after the error is cleared") {
   FirmwareOnBus bus(flashed_image());
   Loader loader(bus);
   loader.enter();

@@ -12,7 +12,7 @@
 
 namespace inkwell::virtual_usb_test {
 
-TEST_CASE("every potentiometer of the gimbal is measured anew whenever its turn comes") {
+TEST_CASE("each turn of a gimbal potentiometer uses a new measurement") {
   using protocol::Signal;
   FirmwareOnBus bus(flashed_image());
   // The gimbal angle changes by about seven converter steps between two samples.

@@ -134,7 +134,9 @@ TEST_CASE("a transfer without an answer is one that the host waits for, until it
   CHECK_FALSE(pace.has_control_transfer());
 }
 
-TEST_CASE("in lock step a host that asks for each report lets time pass until it has it, whatever it streams") {
+TEST_CASE(
+    "in lock step, board time passes after each report request until the host has the report, regardless of its "
+    "stream") {
   HostPace pace;
   CHECK_FALSE(pace.waits_for_board());
   pace.submitted(in(0));

@@ -64,7 +64,7 @@ TEST_CASE("with the largest crystal error that USB tolerates, each bus frame of 
   }
 }
 
-TEST_CASE("with a crystal that is off by more, the host hears nothing, and a rule says why") {
+TEST_CASE("a crystal error of 2600 ppm prevents the USB connection and breaks the rule for the USB clock") {
   OtherBoard other({.crystal_ppm = 2'600});
   FirmwareOnBus& bus = other.bus;
   CHECK_THROWS_AS(bus.connect(), std::runtime_error);
@@ -72,7 +72,7 @@ TEST_CASE("with a crystal that is off by more, the host hears nothing, and a rul
   CHECK(bus.chip.violations().front().rule == virtual_board::Rule::usb_clock);
 }
 
-TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fastest chip, and bites on both") {
+TEST_CASE("on the slowest and the fastest chip, the watchdog resets firmware that hangs and no working firmware") {
   struct Sort {
     std::uint32_t low_speed_internal_Hz;
     double not_before_s, by_s;
@@ -93,7 +93,7 @@ TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fast
   }
 }
 
-TEST_CASE("when the power comes the watchdog is left to bite, and the self-test tells whether it did so in time") {
+TEST_CASE("at power-on the firmware lets the watchdog expire, and the self-test reports whether the time was correct") {
   using protocol::SelfTestResult;
   struct Sort {
     std::uint32_t low_speed_internal_Hz;
@@ -125,7 +125,7 @@ TEST_CASE("the result of the watchdog test is reported again after another reset
   CHECK(other.watchdog_entry().figure == expired_after_ms);
 }
 
-TEST_CASE("a trial of the watchdog that another reset cuts short finds nothing, and hides no later bite") {
+TEST_CASE("an interrupted watchdog test measures nothing and does not hide a later watchdog reset") {
   OtherBoard other({});
   FirmwareOnBus& bus = other.bus;
   bus.run_for(0.01);
@@ -141,7 +141,7 @@ TEST_CASE("a trial of the watchdog that another reset cuts short finds nothing, 
   CHECK(other.fault() == protocol::Fault::watchdog);
 }
 
-TEST_CASE("firmware that the boot pins lead through the boot loader tries no bite, which would lead back there") {
+TEST_CASE("firmware that the boot loader starts skips the watchdog test") {
   OtherBoard other({});
   other.bus.chip.reset(ResetCause::power_on);
   other.bus.chip.start_by_boot_loader();
@@ -151,7 +151,7 @@ TEST_CASE("firmware that the boot pins lead through the boot loader tries no bit
   CHECK(other.watchdog_entry().figure == 0.0f);
 }
 
-TEST_CASE("a crystal that does not start: light and console tell, no device, no bridge; late is a fault that tells") {
+TEST_CASE("if the crystal does not start, light and console report it, and a late start raises a fault") {
   OtherBoard other({});
   FirmwareOnBus& bus = other.bus;
   std::string console;

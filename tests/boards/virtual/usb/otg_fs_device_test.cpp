@@ -388,7 +388,7 @@ TEST_CASE("reset, flush and disable of an idle endpoint take their time, and sto
   }
 }
 
-TEST_CASE("a bus reset deactivates endpoints and leaves them enabled, what they hold stays, an OUT packet too") {
+TEST_CASE("a bus reset deactivates the endpoints, but leaves them enabled with the content of their FIFOs") {
   CoreBench bench;
   bench.activate();
   bench.write(0x950, 1u << 19 | 4);
@@ -569,7 +569,7 @@ TEST_CASE("each access that the manual forbids is reported and has its consequen
     bench.write(0x960, bench.read(0x960) | epena | cnak);
     CHECK(bench.log.has("beyond the 320 words"));
   }
-  SUBCASE("an endpoint that says it is one for control") {
+  SUBCASE("a data endpoint has the type control") {
     bench.write(0x940, 1u << 28 | 2u << 22 | 1u << 15 | 64);
     bench.write(0x950, 1u << 19);
     bench.write(0x940, bench.read(0x940) | epena | cnak);

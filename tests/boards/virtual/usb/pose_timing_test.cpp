@@ -35,7 +35,7 @@ TEST_CASE("every frame brings a new pose while all parameters are set, again and
   }
 }
 
-TEST_CASE("the frame report tells when a frame began, and how fast the clocks run against each other") {
+TEST_CASE("the frame report shows the start of a bus frame and the difference between the clock rates") {
   constexpr double host_clock_ppm = 200.0;
   FirmwareOnBus bus(flashed_image(), host_clock_ppm);
   bus.connect();

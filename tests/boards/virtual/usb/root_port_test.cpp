@@ -189,7 +189,7 @@ TEST_CASE("an interrupt OUT goes out in the frame after its submission, whenever
   }
 }
 
-TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {
+TEST_CASE("interrupt IN transfers complete every millisecond next to a full bulk stream") {
   RootPortBench bench;
   bench.firmware.stream(true);
   bench.firmware.report_every_millisecond = true;
@@ -259,7 +259,7 @@ TEST_CASE("OUT transfers: reports, long bulk, a device that does not listen for 
   CHECK(bench.log.sentences.empty());
 }
 
-TEST_CASE("a halted endpoint answers -EPIPE until the host clears it, toggles start anew") {
+TEST_CASE("a halted endpoint returns -EPIPE until the host clears the halt, and then its data toggle restarts") {
   RootPortBench bench;
   bench.firmware.stream(true);
   bench.use();

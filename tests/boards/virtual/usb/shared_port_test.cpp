@@ -151,7 +151,9 @@ TEST_CASE("a program that goes leaves the others as they are; with the last the 
   board.call([&] { CHECK(board.firmware.resets == resets + 1); });
 }
 
-TEST_CASE("a program that takes no more reports is waited for, but not for ever while others want theirs") {
+TEST_CASE(
+    "the board waits for a program that accepts no reports, but not indefinitely while other programs request "
+    "reports") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   Program stopped(board), other(board);

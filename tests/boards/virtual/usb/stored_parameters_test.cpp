@@ -472,7 +472,7 @@ TEST_CASE("neither the control interrupt nor the poses are held up by a store, h
   }
 }
 
-TEST_CASE("a start that has to erase takes so much longer, and no watchdog bites, on the slowest flash") {
+TEST_CASE("a start with a flash erase takes longer, and the watchdog does not expire on the slowest flash") {
   StoringBoard board({.low_speed_internal_Hz = 47'000, .slowest_flash = true});
   constexpr std::size_t second_sector = 0xC000;
   board.bus.chip.flash()[second_sector + 100] = 0;  // result of an interrupted erase

@@ -23,7 +23,7 @@ TEST_CASE("the offsets are the mean of a tenth of a second") {
   CHECK(offsets.plausible);
 }
 
-TEST_CASE("an offset beyond what an amplifier can have is a broken sensor") {
+TEST_CASE("a current offset that is NaN or above the limit is implausible") {
   const auto plausible = [](const Triple& offset_A) {
     CurrentOffsets offsets;
     while (!offsets.measured()) offsets.measure(offset_A);

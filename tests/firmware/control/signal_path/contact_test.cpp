@@ -59,7 +59,7 @@ TEST_CASE("the damper brakes the way in: F = k d + c d'") {
   CHECK(force_N.x == doctest::Approx(-(800.0f * 0.001f + 2.0f * 0.2f)).epsilon(1e-4));
 }
 
-TEST_CASE("a wall never pulls, whatever the speed of leaving") {
+TEST_CASE("a wall never pulls at any velocity of the probe") {
   tests::Random random{11};
   int pulled_back = 0, let_go = 0;
   for (int i = 0; i < 2000; ++i) {

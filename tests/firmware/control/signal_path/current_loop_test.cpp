@@ -104,7 +104,8 @@ TEST_CASE("each side of a voltage has its own bound") {
 }
 
 TEST_CASE(
-    "a loop's voltage has room for a current to either side, with back EMF, bridge and what the motor may differ by") {
+    "the voltage range of a current loop includes the current in both directions, back EMF, bridge loss and motor "
+    "tolerances") {
   const auto measured = control::Resistance::of(2.0f, 0.0f, 9.0f);
   const auto still = control::voltage_range(1.5f, measured, 0.0f, 0.4f, 16.0f);
   CHECK(still.most_V == doctest::Approx(1.05 * 3.0 + 0.4));
@@ -151,7 +152,7 @@ TEST_CASE("torque becomes current through gear and torque constant, with directi
   CHECK(reference_A[2] == doctest::Approx(-0.1f / (set[gear_ratio_3] * set[torque_constant_3_Nm_per_A])));
 }
 
-TEST_CASE("where a motor reaches its limit all give way together") {
+TEST_CASE("if one motor reaches its current limit, the currents of all motors are scaled down together") {
   control::Motors motors{{2.0f, -1.0f, 4.0f}, {1.0f, 2.0f, 0.5f}, {10.0f, 0.0f, 0.0f}};
   SUBCASE("one") {
     const auto [reference_A, by_current, by_heat] = control::current_references({1.0f, 0.5f, 0.1f}, motors, {});

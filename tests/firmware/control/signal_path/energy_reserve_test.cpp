@@ -36,7 +36,8 @@ TEST_CASE("the energy reserve falls by the work of the force on the probe and ri
   CHECK(reserve.left_J == 0.0f);
 }
 
-TEST_CASE("only what drives the motion gives way, from a quarter of the reserve on, all of it at none") {
+TEST_CASE(
+    "the driving force component is reduced below a quarter of the energy reserve, and is zero with an empty reserve") {
   CHECK(EnergyReserve{0.04f, {}}.driving_reduction(limits) == 0.0f);
   CHECK(EnergyReserve{0.01f, {}}.driving_reduction(limits) == 0.0f);
   CHECK(EnergyReserve{0.005f, {}}.driving_reduction(limits) == doctest::Approx(0.5f));
@@ -85,7 +86,7 @@ TEST_CASE("a program that brakes, and one that springs, lose nothing") {
   CHECK_FALSE(arm.reached(Limit::energy));
 }
 
-TEST_CASE("whatever a force comes from, it changes by no more than it may") {
+TEST_CASE("the force of any source changes by at most force_change_N_per_s") {
   TurningArm arm;
   arm.set[Parameter::force_change_N_per_s] = 2'000.0f;
   arm.settings = control::prepare(arm.set);

@@ -18,7 +18,7 @@ using protocol::Signal;
 using tests::along;
 using tests::TurningArm;
 
-TEST_CASE("nothing gives way up to 0.8 of the speed limit, all of what drives from 0.9 on") {
+TEST_CASE("the driving force component is reduced above 0.8 of the speed limit and is zero above 0.9") {
   protocol::ParameterSet set = protocol::default_parameters();
   set[Parameter::speed_limit_m_per_s] = 2.0f;
   const control::SpeedLimit limit = control::prepare(set).speed;

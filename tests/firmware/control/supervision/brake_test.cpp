@@ -100,7 +100,7 @@ TEST_CASE("the limit is that of the force at the end of the longer link, by each
     CHECK(settings.limits.brake_A[i] == doctest::Approx(2.0f * 0.2f * std::fabs(settings.motors.ampere_per_Nm[i])));
 }
 
-TEST_CASE("only after the faults that leave bridges, currents and speeds to be trusted, alone or beside others") {
+TEST_CASE("the brake starts only after faults that leave bridges, currents and speeds reliable") {
   const std::array braked{Fault::over_speed, Fault::usb_gone, Fault::host_silent, Fault::force_law};
   for (const Fault fault : braked) CHECK(begun(condition(fault)).is_on());
   for (const auto& row : protocol::fault_table) {

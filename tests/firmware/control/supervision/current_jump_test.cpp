@@ -61,7 +61,7 @@ struct HeldArm {
   }
 };
 
-TEST_CASE("a change has a reason up to what its loop was short of, and what its speed drives in the end") {
+TEST_CASE("a current change is a jump only beyond the tolerance plus the loop error or the back-EMF current") {
   const auto resistance = control::Resistance::of(2.0f, 0.0f, 2.0f);
   constexpr float tolerance_A = CurrentJump::tolerance_A;
   for (const float sign : {1.0f, -1.0f}) {
@@ -138,7 +138,7 @@ TEST_CASE(
   CHECK(arm.largest_change_A < 0.33f * CurrentJump::tolerance_A);
 }
 
-TEST_CASE("sound motors follow whatever is asked of them: limits that jump, and forces that change at once") {
+TEST_CASE("healthy motors raise no fault when current limits and forces jump") {
   HeldArm arm;
   arm.set(Parameter::force_change_N_per_s, 100'000.0f);
   arm.set(Parameter::force_ramp_s, 0.0f);
@@ -158,7 +158,7 @@ TEST_CASE("sound motors follow whatever is asked of them: limits that jump, and 
   CHECK(arm.largest_change_A > 0.5f * CurrentJump::tolerance_A);  // a large change was tested
 }
 
-TEST_CASE("a brake goes on whatever currents come and go, and so does a force that is asked for while a pulse runs") {
+TEST_CASE("current changes end neither a brake nor a force that is requested during a test pulse") {
   HeldArm arm;
   arm.press(0, 1.0f);
   // Above the speed limit the arm is braked. The current differs between successive readings.

@@ -84,7 +84,7 @@ TEST_CASE("an oscillation by two or more counts does not indicate a dead encoder
   CHECK(periods_until_dead(by_two) == never);
 }
 
-TEST_CASE("a dither that now and then goes on by a count is counted anew") {
+TEST_CASE("an encoder dither that moves on by a count restarts the check of the wire") {
   const auto creeping = [](float time_s) {
     return static_cast<std::uint16_t>(std::lround(25.0f * time_s) + (std::fmod(time_s * 900.0f, 1.0f) < 0.5f));
   };
@@ -102,7 +102,7 @@ TEST_CASE("as long as it goes to and fro a dead wire is found again and again, a
   for (; period < periods_in(0.8f); ++period) CHECK_FALSE(wire.detect_dead_wire(last, period));
 }
 
-TEST_CASE("looks that are skipped, and a count of periods that wraps, change nothing") {
+TEST_CASE("skipped readings and a wrapped period counter do not change the result") {
   const auto turns = turning(4'000.0f, with_dead_wire);
   CHECK(periods_until_dead(turns, 0xFFFF'FF00u) == periods_until_dead(turns));
   CHECK(periods_until_dead(turns, 0, 3) == doctest::Approx(periods_until_dead(turns)).epsilon(0.02));

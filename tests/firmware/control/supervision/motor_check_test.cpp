@@ -53,7 +53,7 @@ TEST_CASE("a motor with the voltage of its resistance and its speed fits, in eit
   CHECK(checks_until_fault(2, 0.0f, -0.25f, 20.0f) == never);  // shorted and turned by a hand
 }
 
-TEST_CASE("a motor at rest without current may have the bearable voltage, and what dead time takes, and no more") {
+TEST_CASE("a stationary motor without current tolerates tolerance_V plus the dead-time voltage, and no more") {
   CHECK(checks_until_fault(0, 0.99f * MotorCheck::tolerance_V, 0.0f, 0.0f) == never);
   CHECK(checks_until_fault(0, -0.99f * MotorCheck::tolerance_V, 0.0f, 0.0f) == never);
   CHECK(checks_until_fault(0, 1.1f * MotorCheck::tolerance_V, 0.0f, 0.0f) < never);
@@ -100,7 +100,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a motor that was measured may have a fifth more, and what its current has warmed it by since") {
+TEST_CASE("the resistance of a measured motor may be 20 % higher, plus the warming since the measurement") {
   for (const float sign : {1.0f, -1.0f}) {
     const auto fits_with = [sign](const Resistance& resistance, float voltage_V) {
       return checks_until_fault(0, sign * voltage_V, sign * 2.5f, 0.0f, {}, resistance) == never;
@@ -256,7 +256,7 @@ float reference_A(const PressedArm& arm, std::size_t motor) {
   return arm.controller.signals()[of_axis(protocol::Signal::current_reference_1_A, motor)];
 }
 
-TEST_CASE("at the force limit a reading that tells too little makes no more current than 5 % above what is asked for") {
+TEST_CASE("at the force limit, a current sensor that reads too low raises the current by at most 5 %") {
   for (std::size_t motor = 0; motor < 3; ++motor)
     for (const bool is_measured : {true, false}) {
       CAPTURE(motor);
@@ -297,7 +297,7 @@ TEST_CASE("the values of a self-test apply even if the force is switched on thre
   }
 }
 
-TEST_CASE("below the force limit it may make what the limit leaves, as if the motor pressed alone") {
+TEST_CASE("below the force limit, a current sensor that reads too low adds at most the remaining force of the limit") {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     CAPTURE(motor);
     PressedArm arm;

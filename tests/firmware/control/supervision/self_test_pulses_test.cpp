@@ -50,7 +50,7 @@ TEST_CASE("each motor by itself gets low, high, and the same the other way round
   }
 }
 
-TEST_CASE("a motor with a current limit of nearly nothing gets pulses that tell its resistance all the same") {
+TEST_CASE("a motor with a very small current limit gets pulses that are large enough to measure its resistance") {
   constexpr Triple little_for_2_A{2.5f, 0.01f, 2.5f};
   SelfTestPulses pulses;
   float largest_V = 0.0f;
@@ -98,7 +98,7 @@ TEST_CASE("how far its encoder has come is noted for each motor") {
   CHECK(pulses.round().motors[2].moved_counts == 0);
 }
 
-TEST_CASE("pulses that are stopped begin anew with the first motor") {
+TEST_CASE("after a stop, the self-test pulses restart with the first motor") {
   SelfTestPulses pulses;
   pulses.start();
   for (int i = 0; i < 130; ++i) pulses.step({}, {}, scale);

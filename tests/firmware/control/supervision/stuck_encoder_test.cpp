@@ -115,7 +115,7 @@ TEST_CASE("a current that turns round faster than an arm can follow leaves no tr
   CHECK(is_detected(stationary, square(10.0f)));
 }
 
-TEST_CASE("while the arm is held by anything nothing counts, and what was before is forgotten") {
+TEST_CASE("while the arm is held, current changes do not count, and earlier changes are discarded") {
   CHECK_FALSE(is_detected(stationary, rising(0.0f, 8.0f), true));
   StuckEncoder encoder;
   std::uint32_t now_periods = 0;

@@ -62,7 +62,7 @@ TEST_CASE("the state is limited only after the force has risen, and only while a
   CHECK(next(State::limited, good | events(Event::risen)) == State::active);
 }
 
-TEST_CASE("from every state with force stop leads to ready and disable to landing, whatever else was asked") {
+TEST_CASE("stop leads to ready and disable to landing from every state with a force, despite other events") {
   for (const State state : {State::ready, State::ramping, State::active, State::limited, State::landing})
     for (const Events also :
          {Events(), events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)}) {
@@ -79,7 +79,7 @@ TEST_CASE("a landing ends in ready, or in a new rise") {
   CHECK(next(State::ramping, good | events(Event::landed)) == State::ramping);
 }
 
-TEST_CASE("a reference that is lost has to be taken anew") {
+TEST_CASE("a lost reference leads back to the state unreferenced") {
   CHECK(next(State::ready, events(Event::measured, Event::enable)) == State::unreferenced);
 }
 
@@ -229,7 +229,7 @@ TEST_CASE("of several faults the one that explains the others is shown, and the 
   CHECK(advance(first, {good, several | condition(Fault::servo_overrun)}) == first);
 }
 
-TEST_CASE("the short look never says that a state stays which the tables leave") {
+TEST_CASE("stays_unchanged returns true only for a state that the tables do not leave") {
   int stays = 0;
   for (std::size_t i = 0; i < protocol::state_count; ++i)
     for (std::uint32_t bits = 0; bits < 2u * events(Event::self_test).bits(); ++bits)

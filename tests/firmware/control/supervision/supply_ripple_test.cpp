@@ -83,7 +83,7 @@ TEST_CASE("ripple lasts as long as the supply swings, and is over a tenth of a s
   CHECK_FALSE(ripple.detect_ripple(counts_of(nominal_V), period));
 }
 
-TEST_CASE("looks that are skipped, and a count of periods that wraps, change nothing") {
+TEST_CASE("skipped readings and a wrapped period counter do not change the result") {
   const auto at_100_Hz = periods_until_ripple(swing(2.0f, 100.0f));
   CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0xFFFF'FF00u) == at_100_Hz);
   CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0, 5) == doctest::Approx(at_100_Hz).epsilon(0.02));
