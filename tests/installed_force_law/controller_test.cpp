@@ -67,7 +67,7 @@ TEST_CASE("the period count of a law starts at zero and restarts at zero after a
   }
 }
 
-TEST_CASE("a law is felt while the force is on, and begins anew each time that it is switched on") {
+TEST_CASE("a law acts only while the force is on, and restarts with each switch-on") {
   LawRig rig;
   rig.run(100);
   CHECK(rig.force_z_N() == 0.5f);

@@ -19,7 +19,7 @@ namespace {
 using inkwell::tests::TemporaryDirectory;
 using inkwell::tests::VirtualArm, inkwell::tests::free_point_m, inkwell::tests::hand_N_per_m, inkwell::tests::says;
 
-TEST_CASE("an arm tells who it is and where the stylus is") {
+TEST_CASE("the C interface reports the information and the pose of an arm") {
   VirtualArm virtual_arm;
   inkwell_information information;
   REQUIRE(inkwell_get_information(virtual_arm.arm, &information) == INKWELL_OK);

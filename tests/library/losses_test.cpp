@@ -142,7 +142,7 @@ TEST_CASE("the program of a board may end and start again; another arm at its ad
   virtual_arm.wait_until([](const auto& now) { return now.state == INKWELL_READY; });
 }
 
-TEST_CASE("a selection of signals ends with the link, says so, and can be made again") {
+TEST_CASE("a lost connection ends the signal selection with an error, and a new selection is possible") {
   Board board;
   VirtualArm virtual_arm(board.address);
   inkwell_arm* const arm = virtual_arm.arm;
@@ -219,7 +219,7 @@ TEST_CASE("the force can be switched on after a program that went away with its 
   CHECK_MESSAGE(inkwell_enable_force(after.arm, 30) == INKWELL_OK, std::string(inkwell_error_text()));
 }
 
-TEST_CASE("in C++ an exception carries the last pose, and what ended the servo is thrown once") {
+TEST_CASE("a C++ exception contains the last pose, and the reason for the end of a servo is thrown once") {
   Driven board;
   inkwell::Arm arm(board.address);
   const double x_m = arm.pose().position_m[0];

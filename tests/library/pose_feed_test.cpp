@@ -132,7 +132,7 @@ TEST_CASE("whose fault it is: the force was on in this link, or not") {
   CHECK_FALSE(board.poses.had_force());
 }
 
-TEST_CASE("a servo ends with the force and with the poses, and tells why; a new one starts afresh") {
+TEST_CASE("a servo stops with the force or with the poses and reports the reason, and a new servo can start") {
   Board board;
   board.poses.use_force();
   board.is(INKWELL_ACTIVE);

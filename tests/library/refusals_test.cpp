@@ -24,7 +24,7 @@ TEST_CASE("an arm that does not know where it is gives no force until it was in 
   CHECK(is_referenced == 1);
 }
 
-TEST_CASE("a fault whose cause stays cannot be cleared, and the sentence says what to mend") {
+TEST_CASE("a fault with a persistent cause cannot be cleared, and the error names the cause") {
   Board board;
   VirtualArm virtual_arm(board.address);
   virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
@@ -40,7 +40,7 @@ TEST_CASE("a fault whose cause stays cannot be cleared, and the sentence says wh
   CHECK(pose.state == INKWELL_READY);
 }
 
-TEST_CASE("an arm of another version of the protocol is not opened, and the sentence tells the versions") {
+TEST_CASE("an arm with another protocol version is not opened, and the error contains the versions") {
   Board board(next_protocol);
   inkwell_arm* arm = nullptr;
   CHECK(inkwell_open(board.address.c_str(), &arm) == INKWELL_INCOMPATIBLE);

@@ -23,7 +23,7 @@ void take_out(Board& board, VirtualArm& arm) {
   arm.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
 }
 
-TEST_CASE("a servo cannot close its own arm, and says so") {
+TEST_CASE("a servo callback that closes its arm gets an error") {
   VirtualArm virtual_arm;
   struct State {
     std::atomic<int> result = -1;
@@ -96,7 +96,7 @@ TEST_CASE("closing takes the force away, and waits for a servo that does not ret
   CHECK_FALSE(is_closed);
 }
 
-TEST_CASE("threads that start, stop, drive, look and change parameters at once") {
+TEST_CASE("several threads can use servos, forces, poses and parameters simultaneously") {
   VirtualArm virtual_arm;
   inkwell_arm* const arm = virtual_arm.arm;
   std::atomic<bool> ends = false;

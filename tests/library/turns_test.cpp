@@ -74,7 +74,7 @@ TEST_CASE("a call waits for what comes between two poses until the next pose, wi
   CHECK(board.sequence() == 104);
 }
 
-TEST_CASE("the next pose is not asked for before a servo has answered, and what it gives goes out first") {
+TEST_CASE("the next pose is requested only after the servo has answered, and the answer of the servo is sent first") {
   struct Part : library::TurnPart {
     std::atomic<std::uint32_t> answered = 0, sent = 0, read = 0;
     void before_pose() override { sent = answered.load(); }
@@ -136,7 +136,7 @@ TEST_CASE("boards of one group have the same time, and one that leaves holds up 
   CHECK(poses[0].wait(reaches(2000)).sequence >= 2000);
 }
 
-TEST_CASE("a loop that drives is waited for, but not for ever") {
+TEST_CASE("the board waits for a loop that drives, but not indefinitely") {
   PoseFeed poses;
   const SteppedBoard board(poses, std::make_shared<Turns>(), false);
   std::uint32_t seen = poses.last().pose.sequence;

@@ -4,7 +4,7 @@
 
 using namespace inkwell::protocol;
 
-TEST_CASE("printable text stays as it is, whatever its script") {
+TEST_CASE("plain_text does not change printable text of any script") {
   for (const char* text : {"", "PHANTOM Omni", "it's \"quoted\" `here` \\ $ % @ #", "Ärm, 腕, \xF0\x9F\xA6\xBE",
                            "\xC2\xA0", "\xE2\x80\x93 dash"}) {
     CHECK(plain_text(text) == text);

@@ -66,7 +66,7 @@ class Driving(unittest.TestCase):
         with self.assertRaises(inkwell.Refused):
             self.arm.pose
 
-    def test_an_error_of_the_program_is_kept_beside_that_of_the_servo(self):
+    def test_an_error_of_the_program_has_the_error_of_the_servo_as_a_note(self):
         with self.assertRaisesRegex(KeyError, "of the program") as raised, self.arm:
             self.arm.servo(lambda pose: 1 / 0)
             # wait_for_pose() would raise the error of the servo.

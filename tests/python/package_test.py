@@ -233,7 +233,7 @@ class Programs(unittest.TestCase):
             one.set_force((0, 0, 0))
             other.set_force((0, 0, 0))
 
-    def test_one_program_drives_and_another_looks_on(self):
+    def test_a_second_program_can_read_but_not_drive(self):
         program = """
             import sys, inkwell
             with inkwell.open(sys.argv[1]) as arm:
@@ -457,7 +457,7 @@ class Help(unittest.TestCase):
         text = pydoc.render_doc(inkwell.Parameters, renderer=pydoc.plaintext)
         self.assertRegex(text, r"wall_stiffness_N_per_m\n +\| +0 to 3000 N/m, default 800 N/m. Spring constant")
 
-    def test_each_public_thing_says_what_it_is(self):
+    def test_each_public_name_has_a_docstring(self):
         for name in inkwell.__all__:
             self.assertTrue(inspect.getdoc(getattr(inkwell, name)), name)
         for kind in inkwell.Arm, inkwell.VirtualHand:

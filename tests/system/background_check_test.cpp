@@ -172,7 +172,7 @@ TEST_CASE(
   check_reported(rig, Fault::bridge_wire);
 }
 
-TEST_CASE("bridges that let go by themselves take the force away for good, as does the wire that tells of it") {
+TEST_CASE("a fault of the heartbeat, enable or hold wire switches the force off with heartbeat_missed") {
   for (const auto& [fault, wire] : {std::pair{"wire_open", "bridge_heartbeat"},
                                     {"wire_low", "bridge_heartbeat"},
                                     {"wire_open", "bridge_enable"},

@@ -126,8 +126,8 @@ TEST_CASE("an arm description that is wrong is refused with the line to mend") {
   }
 }
 
-TEST_CASE("the companion refuses what it does not know") {
-  SUBCASE("a command behind two dashes") {
+TEST_CASE("the companion refuses invalid commands, options and arguments") {
+  SUBCASE("a command follows two dashes") {
     check_refused(run_program("inkwell", {"--", "run", "./program"}), {"--", "Omit it"});
     check_refused(run_program("inkwell", {"--virtual", "--", "info"}), {"--", "Omit it"});
   }
@@ -240,7 +240,7 @@ TEST_CASE("a window smaller than its parts need, and two recordings that have no
   CHECK(std::filesystem::file_size(picture) > 10'000);
 }
 
-TEST_CASE("saving parameters with --json says what was written") {
+TEST_CASE("saving parameters with --json prints the file and the number of parameters") {
   const TemporaryDirectory directory;
   const auto file = directory.file("parameters.toml");
   const auto result = run_program("inkwell", {"--virtual", "parameters", "save", file, "--json"});
@@ -286,7 +286,7 @@ TEST_CASE("a full disk is reported in a sentence, and no partial file remains") 
   CHECK_FALSE(std::filesystem::exists(directory.file("full.toml")));
 }
 
-TEST_CASE("the window says what a computer without a display or without OpenGL 3.3 lacks") {
+TEST_CASE("without a display or OpenGL 3.3, the window reports the missing requirement") {
   const std::string companion = build_directory() + "/inkwell";
   check_refused(run_program("/usr/bin/env", {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", companion}),
                 {"No display", "graphical session"});
@@ -366,7 +366,7 @@ TEST_CASE("every command explains itself") {
   CHECK(run_program("virtual-board", {"--help"}).out.find("--real-time") != std::string::npos);
 }
 
-TEST_CASE("a command that is now in another program reports its new name, whatever its arguments are") {
+TEST_CASE("a command that moved to another program reports its new name for all arguments") {
   for (const std::vector<std::string>& words : std::initializer_list<std::vector<std::string>>{
            {"campaign"},
            {"campaign", "--help"},

@@ -47,7 +47,7 @@ void check_rows_until_crash(const protocol::BlackBoxReport& box, const std::vect
 
 }  // namespace
 
-TEST_CASE("the black box of a supply that fails shows how it fell, when the bridges went off, and what came then") {
+TEST_CASE("the black box of a failing supply contains the supply drop, the bridge switch-off and the time after it") {
   BoardRig rig;
   press_into_wall(rig);
   CHECK(rig.device->black_box().fault == Fault::none);

@@ -83,7 +83,9 @@ TEST_CASE("the force that rises, falls or is held back is less than, or as much 
   }
 }
 
-TEST_CASE("the self-test's pulses end by themselves, and the second motor's find what came during the first's") {
+TEST_CASE(
+    "self-test pulses without a fault finish normally, and the pulses of motor 2 detect a fault from the pulses of "
+    "motor 1") {
   const Result fault_free = result_of("none testing 1");
   CHECK(fault_free.bridges_were_on);
   CHECK(fault_free.off_after_s.value() > 0.0095);  // the remaining pulses of the self-test
@@ -167,7 +169,7 @@ TEST_CASE("the wire of the supply's divider that breaks is a supply far too low,
   CHECK(result.recovery == Recovery::clear_fault);
 }
 
-TEST_CASE("a motor that does not do as its voltage says is let go of before the hand feels more than it may") {
+TEST_CASE("a motor with an implausible voltage is switched off before the hand feels more than the permitted force") {
   check_sample(
       [](const campaign::Expected& expected) { return expected.longest_off_periods > campaign::quick_periods; });
 }
@@ -194,7 +196,7 @@ TEST_CASE("a core, or a control interrupt, that stops lets go of the bridges wit
   }
 }
 
-TEST_CASE("a cable that is pulled and a bus that is suspended take the force away at once, and the board tells so") {
+TEST_CASE("an unplugged cable or a suspended bus switches the force off within 5 ms and raises usb_gone") {
   for (const char* name : {"usb_cut wall 1", "bus_suspended motion 2"}) {
     CAPTURE(name);
     const Result result = result_of(name);
@@ -224,7 +226,7 @@ TEST_CASE("a main loop that stalls for 12 ms switches the force off with a fault
   CHECK(result.recovery == Recovery::clear_fault);
 }
 
-TEST_CASE("a chip that no longer hears its converters is restarted by the watchdog, and tells so") {
+TEST_CASE("a board without converter interrupts is restarted by the watchdog, and the fault is reported") {
   const Result result = result_of("adc_stopped:1 wall 2");
   REQUIRE(result.off_after_s);
   CHECK(*result.off_after_s < 2 * control_period_s);  // without the control interrupt there is no heartbeat
@@ -281,7 +283,7 @@ TEST_CASE("the first of two faults is reported until it is cleared, or is in the
   CHECK(result_of("bus_suspended fault 1").told_once_cleared == protocol::Fault::none);
 }
 
-TEST_CASE("a board on the way to its boot loader gets there, and its firmware tells afterwards what broke meanwhile") {
+TEST_CASE("a board with a fault still reaches its boot loader, and the firmware reports the fault afterwards") {
   const Result fault_free = result_of("none update 1");
   CHECK_FALSE(fault_free.missed_boot_loader);
   CHECK_FALSE(campaign::is_detected(fault_free));

@@ -56,7 +56,7 @@ void check_bridges_off(BoardRig& rig) {
 
 }  // namespace
 
-TEST_CASE("a control interrupt that never ends leaves the motors without voltage until the watchdog bites") {
+TEST_CASE("a control interrupt that never ends leaves the motors without voltage until the watchdog expires") {
   BoardRig rig;
   press_into_wall(rig);
   REQUIRE(any_motor_driven(rig.control));
@@ -117,7 +117,7 @@ TEST_CASE(
   CHECK(rig.pose().fault == Fault::heartbeat_missed);
 }
 
-TEST_CASE("a core that stands long enough for the bridges to let go has to be asked for the force again") {
+TEST_CASE("a core stall of 0.2 ms or more switches the bridges off and raises a fault") {
   for (const double stands_s : {0.2e-3, 1e-3, 8e-3}) {
     CAPTURE(stands_s);
     BoardRig rig;
@@ -134,7 +134,7 @@ TEST_CASE("a core that stands long enough for the bridges to let go has to be as
   }
 }
 
-TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of the firmware lives") {
+TEST_CASE("the watchdog expires if the control interrupt stops while the main loop runs") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({"exception_lost", std::to_string(control_interrupt)});
@@ -154,7 +154,7 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   CHECK(rig.pose().fault != Fault::watchdog);
 }
 
-TEST_CASE("a main loop that hangs is missed by the control interrupt after 10 ms, long before the watchdog bites") {
+TEST_CASE("the control interrupt detects a stalled main loop after 10 ms, before the watchdog expires") {
   BoardRig rig;
   constexpr double patience_s = static_cast<double>(protocol::main_loop_stalled_s);
   press_into_wall(rig);
@@ -175,7 +175,7 @@ TEST_CASE("a main loop that hangs is missed by the control interrupt after 10 ms
   check_fault_after_restart(rig, Fault::watchdog);
 }
 
-TEST_CASE("a main loop that comes back before the watchdog bites says that it was missed") {
+TEST_CASE("a main loop that recovers before the watchdog expires raises main_loop_stalled") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({"main_loop_stalled", "", 1.2 * static_cast<double>(protocol::main_loop_stalled_s)});
@@ -187,7 +187,9 @@ TEST_CASE("a main loop that comes back before the watchdog bites says that it wa
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
 }
 
-TEST_CASE("a crystal that stops switches the bridges off at once; the board starts when it swings again, and tells") {
+TEST_CASE(
+    "a stopped crystal switches the bridges off immediately, and the board starts and reports the fault when the "
+    "crystal runs again") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({"crystal_stop"});

@@ -147,7 +147,7 @@ TEST_CASE("the black box is reported, saved as a recording, and removed when the
   check_none();
 }
 
-TEST_CASE("the reference alone tells where each field of what goes over the wire is, and what it means") {
+TEST_CASE("the reference lists the position and the meaning of each field of the reports") {
   const auto reference = run_program("inkwell", {"reference"}).out;
   const auto row_of = [&](const std::string& structure, const std::string& field) {
     const auto section = reference.find("\n### " + structure + ", ");

@@ -5,7 +5,7 @@
 
 using namespace inkwell::tests;
 
-TEST_CASE("--crystal is what firmware's PLL gets") {
+TEST_CASE("--crystal sets the input frequency of the PLL") {
   const std::string elf = build_directory() + "/chip-firmware/input_output.elf";
   const auto as_built = run_program("virtual-board", {"--elf", elf, "--seconds", "0.002"});
   CAPTURE(as_built.err);

@@ -27,7 +27,7 @@ std::string word_after(const std::string& text, const std::string& mark) {
 
 }  // namespace
 
-TEST_CASE("GDB stops in the control interrupt, looks, steps, watches a variable and lets go") {
+TEST_CASE("GDB stops in the control interrupt, reads registers, steps, watches a variable and detaches") {
   const std::string elf = build_directory() + "/../board/inkwell.elf";
   RunningProgram board({build_directory() + "/virtual-board", "--elf", elf, "--gdb", "0"});
   const std::string port = word_after(board.read_line(), "gdb=");

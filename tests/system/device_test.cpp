@@ -36,7 +36,7 @@ std::vector<protocol::Signal> floating_point_signals(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("the device enumerates within a second of board time and says who it is") {
+TEST_CASE("the device enumerates within a second of board time and reports its identity") {
   BoardRig rig;  // throws if the device is not present by then
   const auto information = rig.device->information();
   CHECK(information.protocol_version == protocol::protocol_version);
@@ -60,7 +60,7 @@ TEST_CASE("the firmware starts as well when the chip's boot loader starts it") {
   CHECK(rig.device->information().report.servo_overruns == 0);
 }
 
-TEST_CASE("the firmware says on its console who it is and why it was reset") {
+TEST_CASE("the firmware prints its name and the reset cause on its console") {
   const auto image = std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf";
   const auto result = run_program("virtual-board",
                                   {"--elf", image.string(), "--uart", "usart2=stdio", "--seconds", "0.05", "--strict"});
@@ -133,7 +133,7 @@ TEST_CASE("the device holds the table's defaults, takes a transaction whole, and
   CHECK(rig.device->parameters() == protocol::default_parameters());
 }
 
-TEST_CASE("a refused transaction says which value and why, and changes nothing") {
+TEST_CASE("a refused transaction reports the reason and changes nothing") {
   BoardRig rig;
   const auto before = rig.device->parameters();
   const auto refused_with = [&](std::vector<device::ParameterChange> changes) {
@@ -239,7 +239,8 @@ TEST_CASE("a host that does not read the scope loses the oldest samples, counted
 }
 
 TEST_CASE(
-    "a program that the computer stops for a while loses nothing, and the control socket says who is waited for") {
+    "a program that the computer stops for a while loses nothing, and the control socket names the program that the "
+    "board waits for") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("whole.csv");
   device::VirtualBoardOptions options;

@@ -251,7 +251,7 @@ TEST_CASE("the firmware does not leave while the force is on") {
   CHECK(protocol::force_is_on(rig.pose().state));
 }
 
-TEST_CASE("without a board, and without openocd, flashing says what to do") {
+TEST_CASE("flashing without a board or without openocd prints an error with a remedy") {
   const auto nobody = run_program("inkwell", {"flash", "--usbip", "1"});
   CHECK(nobody.exit_code == 1);
   CHECK(says(nobody, "No program answers"));

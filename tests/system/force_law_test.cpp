@@ -53,7 +53,7 @@ int run_beside(BoardRig& rig, std::vector<std::string> words) {
 }
 
 TEST_CASE(
-    "a magnet on the board: its rows are in the tables, the force is as its file says, a recording holds its signal") {
+    "the magnet law adds its rows to the tables, produces the force of its file, and adds a signal to a recording") {
   BoardRig rig(std::string("magnet.elf"));
   const auto law = rig.device->information().force_law;
   REQUIRE(law != nullptr);

@@ -99,7 +99,7 @@ TEST_CASE("a healthy simulated arm needs no change of directions") {
   }
 }
 
-TEST_CASE("first connection looks at everything once") {
+TEST_CASE("the connection check reports the supply, the encoders and the buttons") {
   const auto result = guide({"check", "connection"});
   CHECK(result.at("result") == "finished");
   CHECK(std::abs(result.at("device").at("supply_V").get<double>() - board::supply_nominal_V) < 0.5);

@@ -70,7 +70,7 @@ TEST_CASE("a fault from the control socket starts at its time, is listed, is det
   CHECK(rig.control.status().all.at("injected").empty());
 }
 
-TEST_CASE("the board tells the control period of its firmware, so that a pose's time is a board time") {
+TEST_CASE("the control socket relates control periods to board time") {
   BoardRig rig;
   rig.make_active();
   const auto put_in = rig.control.inject({.fault = "bridge_fault", .after_s = 0.00731});
@@ -83,7 +83,7 @@ TEST_CASE("the board tells the control period of its firmware, so that a pose's 
   CHECK(noticed_s < put_in.at_s + 2 * control_period_s);
 }
 
-TEST_CASE("the control socket refuses what is no fault with a sentence") {
+TEST_CASE("the control socket refuses an invalid fault with a sentence") {
   BoardRig rig;
   CHECK(refusal_of(rig.control, {.fault = "nothing"}).find("there is no fault \"nothing\"") != std::string::npos);
   CHECK(refusal_of(rig.control, {.fault = "motor_open"}).find("motor_open needs a location") != std::string::npos);

@@ -56,7 +56,7 @@ std::uint32_t stored_force_limit() { return held_force_limit() + std::uint32_t{s
 
 }  // namespace
 
-TEST_CASE("a bit that flips in what the interrupts run from switches the force off, and a reset writes it anew") {
+TEST_CASE("a bit flip in the code or vectors of interrupts switches the force off, and a reset restores the memory") {
   // The firmware does not use these locations while the hand presses. The memory check detects each error before the
   // error has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
@@ -68,7 +68,7 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
   }
 }
 
-TEST_CASE("a bit that flips in the settings switches the force off, and a reset prepares them anew") {
+TEST_CASE("a bit flip in the settings switches the force off, and a reset prepares the settings again") {
   // Two copies of the settings follow the parameters in memory.
   const std::uint32_t settings = firmware_symbol("host_link") + sizeof(link::Guarded<protocol::ParameterSet>);
   constexpr std::uint32_t bytes = sizeof(control::Settings);

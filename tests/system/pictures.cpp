@@ -103,7 +103,7 @@ TEST_CASE("pictures: small and large windows, and 192 dots per inch" * doctest::
     }
 }
 
-TEST_CASE("pictures: a soft wall, what the proxy is, and a fault that was put in" * doctest::skip()) {
+TEST_CASE("pictures: a soft wall, the explanation of the proxy, and an injected fault are drawn" * doctest::skip()) {
   WindowRig rig({"--layout", "wall"});
   rig.enter("tuning/wall_stiffness_N_per_m", "250");
   rig.press_key("Return");

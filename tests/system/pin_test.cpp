@@ -10,7 +10,7 @@
 using namespace inkwell;
 using namespace inkwell::tests;
 
-TEST_CASE("a pin shows what the chip puts out, and the chip sees what drives it from outside") {
+TEST_CASE("a pin has the level that the chip drives, and the chip reads a level that is driven from outside") {
   const device::VirtualBoard board({.elf = build_directory() + "/chip-firmware/input_output.elf", .paused = true});
   auto control = board.control();
   CHECK(control.pin("PC10").chip_drives == "floating");

@@ -124,7 +124,7 @@ TEST_CASE("each port can be a Unix socket that only its user can open, in a fold
   CHECK_FALSE(fs::exists(folder));
 }
 
-TEST_CASE("a board that a program starts has no TCP port, and leaves nothing behind when that program is killed") {
+TEST_CASE("a board that a program starts has no TCP port, and its files disappear when the program is killed") {
   const TemporaryDirectory runtime;
   RunningProgram program({build_directory() + "/inkwell", "watch", "--virtual", "--json"},
                          {"XDG_RUNTIME_DIR=" + runtime.path()});

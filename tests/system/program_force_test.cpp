@@ -254,7 +254,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
   }
 }
 
-TEST_CASE("a shape that is not placed anew ends with its life") {
+TEST_CASE("a shape that is not placed again ends after its life") {
   ProgramRig rig;
   device::Shapes shapes;
   shapes.sphere = device::Sphere{.centre_m = {0, 0, 0.5f}, .radius_m = 0.01f, .surface = {.life_s = 0.1f}};

@@ -30,7 +30,7 @@ std::string read_file(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("a recording holds every control period, and says where it comes from") {
+TEST_CASE("a recording contains every control period and states its origin") {
   // All subcases use the same recording.
   static const TemporaryDirectory directory;
   static const auto file = directory.file("a.h5");
@@ -63,7 +63,7 @@ TEST_CASE("a recording holds every control period, and says where it comes from"
   }
   CHECK(current_varies);
 
-  SUBCASE("replay says what it holds") {
+  SUBCASE("replay describes the recording") {
     const auto described = run_program("inkwell", {"replay", file, "--json"});
     REQUIRE(described.exit_code == 0);
     const auto held = json::parse(described.out);

@@ -73,7 +73,7 @@ TEST_CASE("a test's pulse goes off with a stop, a host that falls silent and a c
   }
 }
 
-TEST_CASE("a supply that fails switches the bridges off and says so") {
+TEST_CASE("a failing supply switches the bridges off and raises supply_low") {
   BoardRig rig;
   rig.make_active();
   rig.control.supply(9.0);  // the board's capacitors supply the bridges for a while
@@ -125,7 +125,7 @@ TEST_CASE("a bridge that reports a fault stops all of them at the next control p
   check_reports(reported_by_info(rig), protocol::Fault::bridge_fault);
 }
 
-TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it is slow, and then let go") {
+TEST_CASE("an arm that is too fast is braked by the voltage of its motors until it is slow, and is then released") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
@@ -186,7 +186,7 @@ TEST_CASE("an arm whose host fell silent while a hand swings it is braked now an
   CHECK(rig.pose().fault == protocol::Fault::host_silent);
 }
 
-TEST_CASE("a bridge that tells of a fault ends the gentle brake as well") {
+TEST_CASE("a bridge fault ends the gentle brake") {
   BoardRig rig;
   let_host_fall_silent(rig);
   rig.control.run(0.06);
@@ -204,7 +204,7 @@ TEST_CASE("a bridge that tells of a fault ends the gentle brake as well") {
   }
 }
 
-TEST_CASE("where a bridge tells of a fault meanwhile the arm is not braked any more") {
+TEST_CASE("a bridge fault ends the brake of an arm that was too fast") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
@@ -241,7 +241,7 @@ TEST_CASE("a CPU fault switches active bridges off first and is reported after t
   check_reports(reported_by_info(rig), protocol::Fault::processor_fault);
 }
 
-TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog, and says so") {
+TEST_CASE("firmware that hangs while the bridges are on is restarted by the watchdog and reports the reset") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({"program_astray", std::to_string(endless_loop_address())});

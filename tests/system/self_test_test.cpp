@@ -186,7 +186,7 @@ TEST_CASE("the self-test after a reset detects silent faults and blocks the forc
   }
 }
 
-TEST_CASE("sound boards pass: any seed and pose, held, let go of, and in a hand that moves") {
+TEST_CASE("healthy boards pass the self-test for any seed and pose, held, released, or in a moving hand") {
   constexpr int seeds = 20;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     INFO("seed ", seed);
@@ -290,7 +290,7 @@ TEST_CASE("the hand hardly feels it") {
   CHECK(felt.energy_J < 0.001);
 }
 
-TEST_CASE("without a supply the test says that it broke off, and is made when there is one") {
+TEST_CASE("without a supply the self-test is aborted and reports this, and it runs when a supply is present") {
   BoardRig rig;
   rig.control.inject({"supply_cut"});
   rig.control.run(0.5);

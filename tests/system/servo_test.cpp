@@ -201,7 +201,7 @@ TEST_CASE("eight planes cost at most 250 cycles while none is touched, and leave
   CHECK(rig.device->information().report.servo_cycles_longest < board::servo_cycles * 0.65);
 }
 
-TEST_CASE("a motor that holds against a wall warms as its true current says") {
+TEST_CASE("the heat of a motor that presses against a wall follows its true current") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);

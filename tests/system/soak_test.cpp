@@ -99,7 +99,7 @@ TEST_CASE("a soak takes no time and no length that is no number") {
     }
 }
 
-TEST_CASE("a soak whose next board does not start says why, and writes what is known so far") {
+TEST_CASE("a soak that cannot start its next board reports the reason and writes the results so far") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("soak.json"), image = directory.file("inkwell.elf");
   std::filesystem::copy_file(build_directory() + "/../board/inkwell.elf", image);
@@ -114,7 +114,7 @@ TEST_CASE("a soak whose next board does not start says why, and writes what is k
   CHECK(json.at("sittings").size() < 500);
 }
 
-TEST_CASE("a soak that is stopped writes what is known so far") {
+TEST_CASE("a stopped soak writes the results so far") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("soak.json");
   RunningProgram run(

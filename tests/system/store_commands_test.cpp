@@ -117,7 +117,7 @@ TEST_CASE("values that differ from the stored values are marked, counted and lis
   CHECK(after.at("at_start").at("unknown") == 0);
 }
 
-TEST_CASE("a factory reset wants a word of yes, forgets what is stored and gives the defaults") {
+TEST_CASE("a factory reset requires --yes, erases the stored parameters and restores the defaults") {
   RememberingBoard board;
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600"});
   board.done({"parameters", "store"});
@@ -137,7 +137,7 @@ TEST_CASE("a factory reset wants a word of yes, forgets what is stored and gives
   CHECK(nothing.err.find("no stored parameters to restore") != std::string::npos);
 }
 
-TEST_CASE("while the force is on nothing is stored or forgotten, and the board says why") {
+TEST_CASE("while the force is on, parameters are neither stored nor erased, and the board reports the reason") {
   RememberingBoard board;
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "host_timeout_s=2"});
   const auto& reason = info(protocol::StoreResult::force_is_on);
@@ -160,7 +160,7 @@ TEST_CASE("while the force is on nothing is stored or forgotten, and the board s
   CHECK(board.json({"parameters", "stored"}).at("records_written") == 0);
 }
 
-TEST_CASE("a virtual board of one command remembers in a file what was stored") {
+TEST_CASE("a virtual board of one command retains stored parameters in a file") {
   const TemporaryDirectory directory;
   const auto run = [&](std::vector<std::string> words) {
     words.insert(words.end(), {"--virtual", "--flash", directory.file("flash.bin")});
@@ -207,7 +207,7 @@ TEST_CASE("values that a virtual board of one command would lose are reported, a
   CHECK(without_file.err.find("Use --flash FILE and --store") != std::string::npos);
 }
 
-TEST_CASE("a virtual board without a file says that it forgets") {
+TEST_CASE("a virtual board without a file reports that its parameters are lost") {
   const auto stored = run_program("inkwell", {"parameters", "store", "--virtual"});
   CHECK(stored.exit_code == 0);
   CHECK(stored.err.find("--flash FILE") != std::string::npos);

@@ -41,7 +41,7 @@ TEST_CASE("an unplugged device is reported and connects again automatically") {
   CHECK_FALSE(rig.look().says("No arm was found"));
 }
 
-TEST_CASE("a window that is closed with the force on lets it fall, and the board tells no fault") {
+TEST_CASE("closing the window switches the force off, and the board reports no fault") {
   WindowRig rig;
   rig.switch_force_on();
   rig.close_and_read_parameters();
@@ -123,7 +123,7 @@ TEST_CASE("a recording whose device is unplugged holds everything up to then") {
   CHECK(recording.lost() == 0);
 }
 
-TEST_CASE("a guide whose device is unplugged says so, and the parameters on trial are put back") {
+TEST_CASE("a guide whose device is unplugged reports this and restores the parameters") {
   WindowRig rig;
   rig.click("tabs/Guides");
   rig.click("guides/Current-loop tuning");

@@ -35,7 +35,7 @@ std::string difference_below_the_status_bar(const Image& one, const Image& other
 
 }  // namespace
 
-TEST_CASE("while the sphere moves and the plots scroll, the pane beside them is not drawn anew") {
+TEST_CASE("while the sphere moves and the plots scroll, the pane next to them is not redrawn") {
   WindowRig rig({"--layout", "overview"});
   rig.move_to({700, 60});
   rig.switch_force_on();

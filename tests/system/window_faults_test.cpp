@@ -79,7 +79,7 @@ TEST_CASE("a fault is chosen in the table, injected, shown with the reported fau
   CHECK_FALSE(rig.look().can_click("faults/Heal all"));
 }
 
-TEST_CASE("without a control port there is nothing to put faults into, and the pane says why") {
+TEST_CASE("without a control port no faults can be injected, and the pane states the reason") {
   WindowRig rig({"--flat-colours"}, false);
   rig.press_key("F7");  // no such tab
   CHECK(rig.look().has("tuning/wall_stiffness_N_per_m"));
@@ -181,7 +181,7 @@ TEST_CASE("a wire is chosen from the board's, two of them one after the other") 
   look_for(rig, "encoders[0].a+encoders[0].b, active since");
 }
 
-TEST_CASE("a device that is pulled or a board that is gone leaves a pane that says so") {
+TEST_CASE("the faults pane reports an unplugged device or a missing board") {
   WindowRig rig;
   open_pane(rig);
   rig.enter("faults/search", "usb_cut");

@@ -67,7 +67,7 @@ constexpr std::size_t of_a_sample = 100;
 
 }  // namespace
 
-TEST_CASE("another recording is laid over the one that is replayed, is drawn beside it, and is taken away") {
+TEST_CASE("a second recording is drawn over the replayed recording and can be removed") {
   const TemporaryDirectory directory;
   const std::string soft = directory.file("soft.h5"), stiff = directory.file("stiff.csv");
   write_swing(soft, 3);

@@ -174,7 +174,7 @@ TEST_CASE("a page lists the keys") {
   }
 }
 
-TEST_CASE("the scene says why no wall pushes back, and has the button for it") {
+TEST_CASE("while the force is off, the scene states that walls do not push back and has a button to switch it on") {
   WindowRig rig;
   REQUIRE(rig.look().says("The force is off: walls do not push back."));
   rig.click("scene/Switch force on");

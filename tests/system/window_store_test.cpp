@@ -57,7 +57,7 @@ TEST_CASE("values that are not stored are counted; stored by a button, they outl
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
-TEST_CASE("nothing is stored or forgotten while the force is on, and the window says why") {
+TEST_CASE("while the force is on, parameters cannot be stored or erased, and the window states the reason") {
   WindowRig rig;
   make_stiff(rig);
   rig.switch_force_on();
@@ -89,7 +89,7 @@ TEST_CASE("the stored values are given back by a question, as one step that can 
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
-TEST_CASE("a factory reset asks first, then forgets what is stored and gives the defaults") {
+TEST_CASE("a factory reset asks for confirmation, erases the stored parameters and restores the defaults") {
   WindowRig rig;
   make_stiff(rig);
   store(rig);
@@ -122,7 +122,7 @@ TEST_CASE("a question about a device that goes away goes with it") {
   rig.wait_until("it is chosen", [](const Sight& now) { return now.applied_at_periods() != 0; });
 }
 
-TEST_CASE("after a loss of power the window lists what is not as before, and sends it only when asked") {
+TEST_CASE("after a power loss the window lists the changed values and sends them only on request") {
   WindowRig rig;
   make_stiff(rig);
   restart(rig);
@@ -146,7 +146,7 @@ TEST_CASE("after a loss of power the window lists what is not as before, and sen
   }
 }
 
-TEST_CASE("a cable that was out changes nothing, and the window says so") {
+TEST_CASE("a reconnected cable changes no value, and the window reports this") {
   WindowRig rig;
   make_stiff(rig);
   rig.control.usb(false);
@@ -156,7 +156,7 @@ TEST_CASE("a cable that was out changes nothing, and the window says so") {
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
-TEST_CASE("a guide ends by offering to store what it has changed") {
+TEST_CASE("a guide offers to store its changes after they are applied") {
   WindowRig rig;
   rig.click("tabs/Guides");
   rig.click("guides/Current-loop tuning");

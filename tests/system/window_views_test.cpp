@@ -95,7 +95,7 @@ TEST_CASE("a signal is found by a word and dragged into a plot, and a formula is
   rig.wait_until("it has a plot", [](const Sight& now) { return now.has("scope/difference_N"); });
 }
 
-TEST_CASE("where nothing answers at the address that was given, the window says so") {
+TEST_CASE("the window reports that no program answers at the address") {
   WindowRig rig;
   rig.control.usb(false);
   rig.wait_until("no arm is there", [](const Sight& now) { return now.says("No arm was found"); });

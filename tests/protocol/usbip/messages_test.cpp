@@ -103,7 +103,7 @@ TEST_CASE("USB/IP: transfers") {
   CHECK(lies_as(unlinked, expected));
 }
 
-TEST_CASE("USB/IP: what was written is read again, from any address") {
+TEST_CASE("USB/IP: a written message is read back unchanged from any address") {
   usbip::Submit submit{.length = 0x8000'0001};
   submit.header.sequence = 77;
   std::array<std::byte, 49> buffer{};

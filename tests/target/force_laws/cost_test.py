@@ -83,7 +83,7 @@ class Refusals(unittest.TestCase):
                                 "float other(float x);", "float other(float x);\nextern \"C\" float step_force_law(float x);"))
         self.assert_refused(result, "the force law calls itself")
 
-    def test_an_image_without_a_law_is_said_to_have_none(self):
+    def test_an_image_without_a_law_is_refused(self):
         self.assert_refused(self.price("int other() { return 1; }"), "has no function step_force_law")
 
 

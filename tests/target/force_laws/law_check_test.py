@@ -49,7 +49,7 @@ class LawCheck(unittest.TestCase):
                             "  static Vector3 force_N(const Probe& probe, const Parameters& parameters,",
                             "the force law lacks its function: static Vector3 force_N(const Probe&, const Parameters&,")
 
-    def test_no_sentence_on_what_it_is(self):
+    def test_a_law_without_a_description_is_refused(self):
         self.assert_refused("std::string_view help", "std::string_view about", "lacks a sentence on what it is")
 
     def test_a_member_without_a_row(self):

@@ -64,7 +64,7 @@ TEST_CASE("a higher window gives scene and scope more in proportion") {
   CHECK(scope_part(2160) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
 }
 
-TEST_CASE("a drag moves the splitter under the mouse, from what is shown") {
+TEST_CASE("a drag moves the splitter with the mouse from its displayed position") {
   WindowSettings settings;
   settings.scope_part = 0.9f;  // more than the available height
   const ImVec2 window{1280, 800};

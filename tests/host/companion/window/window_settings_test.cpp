@@ -33,7 +33,7 @@ TEST_CASE("settings come back as they were written") {
   CHECK(parse_settings(format_settings(settings)) == settings);
 }
 
-TEST_CASE("a damaged file gives the defaults, and what makes no sense keeps its default") {
+TEST_CASE("a damaged file or an invalid value in the settings produces the defaults") {
   CHECK(parse_settings("[window\ntheme = ") == WindowSettings{});
   CHECK(parse_settings("") == WindowSettings{});
   const WindowSettings settings = parse_settings(
@@ -54,7 +54,7 @@ TEST_CASE("a formula that cannot be read is left out, with the plot that showed 
   CHECK(settings.scope.layout.plots[0].signals[0].name() == "good");
 }
 
-TEST_CASE("settings are kept in a file, whose folder need not exist; what prevents it is said") {
+TEST_CASE("settings are written to a file in a new folder, and a write error is reported") {
   const TemporaryDirectory directory;
   const std::filesystem::path file = directory.file("inkwell/window.toml");
   WindowSettings settings;

@@ -27,7 +27,7 @@ using inkwell::tests::content_of;
 using inkwell::tests::seen;
 using inkwell::tests::TemporaryDirectory;
 
-TEST_CASE("the list has every fault of the table in every situation, so often as it says, and is numbered through") {
+TEST_CASE("the campaign lists every fault in every situation, as often as required, with consecutive numbers") {
   const auto cases = all_cases();
   std::set<std::string> names;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -136,7 +136,7 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
 }
 
-TEST_CASE("a fault of the second of three is had at each of them, one of what there is only one of stays where it is") {
+TEST_CASE("at_another moves a fault of one of three parts to another part, and leaves other faults unchanged") {
   const auto listed = case_faults();
   const auto moved = [&](const std::string& name, unsigned motor) {
     const auto found = std::ranges::find_if(listed, [&](const CaseFault& fault) { return fault.name() == name; });

@@ -135,7 +135,7 @@ TEST_CASE("walls have names; the forward one lies in the arm's plane") {
   CHECK(wall_position_m(parameters, {0, -1}) == static_cast<double>(parameters[Parameter::box_minimum_x_m]));
 }
 
-TEST_CASE("the summary says what it is and takes its numbers from the result") {
+TEST_CASE("the summary names the simulation and contains the numbers of the result") {
   Circumstances circumstances;
   circumstances.about.simulation = true;
   circumstances.about.parameters = omni();

@@ -226,7 +226,7 @@ TEST_CASE("motors may press with the limit and 5 % in a control period, in a mil
   }
 }
 
-TEST_CASE("of a limit of next to nothing the noise is a multiple, which tells nothing") {
+TEST_CASE("the oracle does not rate motor noise relative to a very small force limit") {
   Watched weak;
   weak.switch_on();
   weak.motor_force_N = 0.1;
@@ -241,7 +241,7 @@ TEST_CASE("of a limit of next to nothing the noise is a multiple, which tells no
   weak.check_nothing();
 }
 
-TEST_CASE("a force that goes on and off between two looks is judged") {
+TEST_CASE("the oracle detects an excessive force that switches on and off between two readings") {
   Watched board(Kind::too_fast);
   board.motor_force_N = 5.0;
   board.oracle.request_force();
@@ -268,7 +268,7 @@ TEST_CASE("the oracle judges the motor force while the force switches off, and n
     tripped.step(State::fault, Fault::over_speed);
     tripped.check_nothing();
   }
-  SUBCASE("in the test of a board that starts anew") {
+  SUBCASE("the board restarts and runs its self-test") {
     ++tripped.restarts;
     tripped.oracle.disturb(Disturbance::hardware);
     for (int look = 0; look < 4; ++look)

@@ -34,7 +34,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
-TEST_CASE("the table sums what the boards did, and names each finding with the way to see it again") {
+TEST_CASE("the table sums the results of the boards and shows for each finding how to reproduce it") {
   const std::string table = table_of(some_soak());
   INFO(table);
   CHECK(has(table, "601.5 s"));
@@ -62,7 +62,7 @@ TEST_CASE("the JSON has each phase and finding, and the sums that a script asks 
   CHECK(json.at("sittings").at(1).at("findings").at(0).at("text") == "over_current");
 }
 
-TEST_CASE("a soak that was stopped says so") {
+TEST_CASE("the result of a stopped soak shows that it was stopped early") {
   Soak soak = some_soak();
   CHECK_FALSE(has(table_of(soak), "stopped"));
   CHECK(nlohmann::json::parse(json_of(soak)).at("stopped") == false);

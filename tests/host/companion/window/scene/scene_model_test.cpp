@@ -45,7 +45,7 @@ TEST_CASE("until the arm has been in the inkwell it is drawn there") {
   CHECK_FALSE(scene.in_contact);
 }
 
-TEST_CASE("in a fault the arm is drawn where it is as long as that is known, whatever the fault") {
+TEST_CASE("in a fault, the scene draws the arm at its pose while the encoders are referenced") {
   const auto parameters = protocol::default_parameters();
   const glm::vec3 expected_m = window::build_scene(middle_pose(protocol::State::ready), parameters).probe_m;
   auto pose = middle_pose(protocol::State::fault);
@@ -132,7 +132,7 @@ TEST_CASE("the camera never turns over and never leaves its distances") {
   CHECK(camera.distance_m < 3.1f);
 }
 
-TEST_CASE("a pose looks different when a person could see it") {
+TEST_CASE("differs_visibly returns true only for a visible difference between two poses") {
   device::Pose a{};
   device::Pose b = a;
   b.sequence = 77;

@@ -37,7 +37,7 @@ TEST_CASE("a formula gives sums, differences, products and functions of signals"
   CHECK(std::isnan(value_of("1 / force_N", {0.0f})));
 }
 
-TEST_CASE("a filter lets through what is slow, and begins anew after a gap") {
+TEST_CASE("a low-pass filter passes slow changes and restarts after a gap") {
   Formula slow = formula("force_N");
   slow.low_pass_Hz = 100.0;
   FormulaValues values(slow);
@@ -92,7 +92,7 @@ TEST_CASE("an invalid formula is refused with a sentence that names the mistake"
   }
 }
 
-TEST_CASE("the history has a formula's values of what came before it, and of what comes") {
+TEST_CASE("the history computes a formula for earlier and for later samples") {
   const ScopeSignal twice(formula("2 * force_N"));
   const ScopeSignal elsewhere(formula("2 * supply_V"));
   SignalHistory history(256);

@@ -21,13 +21,13 @@ TEST_CASE("every signal stands in one group, and groups are found by words") {
   CHECK(signal_groups("no such thing").empty());
 }
 
-TEST_CASE("references are drawn last, above the noise of what follows them") {
+TEST_CASE("references are drawn last, so that they are visible above the signals that follow them") {
   CHECK(drawing_order({Signal::current_reference_1_A, Signal::current_1_A, Signal::duty_1}) ==
         std::vector<std::size_t>{1, 2, 0});
   CHECK(drawing_order({Signal::force_x_N, Signal::force_y_N}) == std::vector<std::size_t>{0, 1});
 }
 
-TEST_CASE("a plot that shows nothing says what to do") {
+TEST_CASE("an empty plot has a hint that names the next action") {
   SignalHistory history(256);
   const ScopePlot force{PlotKind::time, "Force", {Signal::force_N}};
   CHECK(hint_for(force, history).find("Connect a device") != std::string::npos);

@@ -62,7 +62,7 @@ TEST_CASE("one spike among a million samples is seen in its column and nowhere e
   for (std::size_t i = 0; i < columns.size(); ++i) CHECK(columns[i].maximum == (i == spike / 1250 ? 5.0f : 0.0f));
 }
 
-TEST_CASE("every sample is in one column, wherever the stretch begins, and none from beside it") {
+TEST_CASE("each sample belongs to exactly one column, and no sample outside the interval is included") {
   constexpr std::uint64_t first = 1003, last = 402'011;
   SignalSeries series(std::size_t{1} << 20);
   for (std::uint64_t i = 0; i < 500'000; ++i)
@@ -89,7 +89,7 @@ TEST_CASE("columns before the first sample and after the last one are empty") {
   CHECK(std::isnan(columns[2].minimum));
 }
 
-TEST_CASE("the history marks lost samples and starts anew with another selection") {
+TEST_CASE("the history marks lost samples and restarts after a change of the selection") {
   using protocol::Signal;
   window::SignalHistory history(1024);
   history.append(samples_of({Signal::force_N, Signal::duty_1}, 5000, 10, 2.0f));

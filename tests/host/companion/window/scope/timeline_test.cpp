@@ -47,7 +47,7 @@ TEST_CASE("a long picture rolls by whole parts of its span, so that it does not 
   CHECK(last > 50'001 - part);
 }
 
-TEST_CASE("a pause keeps the picture and lets go what comes; after it the history starts anew") {
+TEST_CASE("a pause retains the picture and discards new samples, and the history restarts after the pause") {
   Timeline timeline = with_samples(10'000);
   timeline.pause(true);
   receive(timeline, 500);
@@ -70,7 +70,7 @@ TEST_CASE("a drag pauses and goes into the past, as far as something is kept") {
   CHECK(timeline.stretch().last == doctest::Approx(10'000 + 0.5 * 0.1 * rate_Hz));
 }
 
-TEST_CASE("while paused, what lies under the mouse stays under it when the wheel turns") {
+TEST_CASE("while paused, a zoom leaves the time under the mouse pointer unchanged") {
   Timeline timeline = with_samples(10'000);
   timeline.pause(true);
   const Stretch before = timeline.stretch();
