@@ -278,7 +278,7 @@ TEST_CASE("store: data at the position of the next record is erased at start-up 
   CHECK(flash.erases[0] + flash.erases[1] == 1);
 }
 
-TEST_CASE("store: a flash that does not take a word fails, and what was newest still is") {
+TEST_CASE("store: a flash that refuses a word causes an error, and the newest record remains valid") {
   FakeFlash flash;
   FlashLog log = started(flash);
   REQUIRE(store(log, 1));

@@ -66,7 +66,7 @@ std::optional<Warmth> found_in(const Memory& memory) { return std::bit_cast<Moto
 
 }  // namespace
 
-TEST_CASE("motor heat: what was left last is what the next start finds, and those after it") {
+TEST_CASE("motor heat: each start reads the heat that was stored most recently") {
   MotorHeatKeeper keeper = fresh();
   for (const Warmth& warmth : {warm, warmer, warm, warm, warmer}) {
     keeper.store(warmth);
@@ -126,7 +126,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
   }
 }
 
-TEST_CASE("motor heat: the first copy after a start leaves what the start found where it is") {
+TEST_CASE("motor heat: the first copy after a start does not overwrite the heat that the start read") {
   Memory memory = memory_with(warm, warmer);
   memory.next_number = 0xF000'0001;  // an invalid number, which start() ignores
   auto keeper = std::bit_cast<MotorHeatKeeper>(memory);
@@ -157,7 +157,7 @@ TEST_CASE("motor heat: the newest is known when numbers wrap") {
   check_is(found_in(memory), warm);
 }
 
-TEST_CASE("motor heat: what is kept lies in its range") {
+TEST_CASE("motor heat: stored values are limited to their range") {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   constexpr float most = MotorHeatKeeper::most;
   MotorHeatKeeper keeper = fresh();
@@ -165,7 +165,7 @@ TEST_CASE("motor heat: what is kept lies in its range") {
   check_is(keeper.start(false), {{0.0f, 0.5f, most}, {most, most, 0.0f}, 1});
 }
 
-TEST_CASE("motor heat: what lies out of its range, or is no number, is not believed, however sound it looks") {
+TEST_CASE("motor heat: a stored value that is outside its range or not a number is ignored") {
   Memory memory = memory_with(warm, warm);
   memory.slots[1].left.warmth = warmer;
   memory.slots[1].seal();

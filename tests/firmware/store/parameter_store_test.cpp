@@ -122,7 +122,7 @@ TEST_CASE("defaults are restored by their operation, all of them") {
   }
 }
 
-TEST_CASE("each refusal tells its reason and leaves everything as it was") {
+TEST_CASE("each refusal reports its reason and leaves all parameters unchanged") {
   ParameterStore store;
   const std::uint16_t stiffness = id_of(Parameter::wall_stiffness_N_per_m);
   const float infinity = std::numeric_limits<float>::infinity();

@@ -117,7 +117,7 @@ bool holds(const Entries& entries, std::uint32_t id, float value) {
 
 }  // namespace
 
-TEST_CASE("stored parameters: a blank flash gives the defaults, and the report says that nothing is stored") {
+TEST_CASE("stored parameters: a blank flash provides the defaults, and the report shows this") {
   PlainFlash flash;
   const Board board(flash);
   CHECK(board.parameters.values() == link::image_defaults());
@@ -136,7 +136,7 @@ TEST_CASE("stored parameters: a blank flash gives the defaults, and the report s
   CHECK(report.stores_left > 10);
 }
 
-TEST_CASE("stored parameters: what is held when the command comes is what the next start holds") {
+TEST_CASE("stored parameters: the next start has the values that were set when the store command arrived") {
   PlainFlash flash;
   Board board(flash);
   board.set(force_limit, 1.25f);
@@ -225,7 +225,7 @@ TEST_CASE("stored parameters: a word every ten control periods, and none while t
   CHECK(board.finish() == StoreResult::done);
 }
 
-TEST_CASE("stored parameters: what stands there already is not written again") {
+TEST_CASE("stored parameters: values that are already stored are not written again") {
   PlainFlash flash;
   store_in(flash, force_limit, 1.25f);
   Board board(flash);
@@ -300,7 +300,7 @@ TEST_CASE(
   CHECK(board.parameters.values() == link::image_defaults());
 }
 
-TEST_CASE("stored parameters: what another firmware knew is named and kept") {
+TEST_CASE("stored parameters: parameters of another firmware are counted as unknown and retained") {
   PlainFlash flash;
   RecordHead head = valid_head();
   head.firmware_version = 0x0009'0807;
@@ -440,7 +440,7 @@ TEST_CASE("stored parameters: a worn flash is reported, and the last stored valu
   CHECK(Board(flash).held(force_limit) == 1.25f);
 }
 
-TEST_CASE("stored parameters: the report of what is stored is one to restore it with") {
+TEST_CASE("stored parameters: a host can send the report of the stored values back to restore them") {
   PlainFlash flash;
   store_in(flash, force_limit, 1.25f);
   Board board(flash);
@@ -474,7 +474,7 @@ TEST_CASE("stored parameters: values of which a bit has changed are not stored, 
   }
 }
 
-TEST_CASE("stored parameters: a bit that changes while they are written leaves what was stored before") {
+TEST_CASE("stored parameters: a bit flip during a write leaves the previous record valid") {
   PlainFlash flash;
   store_in(flash, force_limit, 1.25f);
   Board board(flash);
@@ -489,7 +489,7 @@ TEST_CASE("stored parameters: a bit that changes while they are written leaves w
   CHECK(Board(flash).held(force_limit) == 1.5f);
 }
 
-TEST_CASE("stored parameters: a bit that changes in any word of what is written, or of what is stored, is found") {
+TEST_CASE("stored parameters: a bit flip in any word of the written or the stored values is detected") {
   PlainFlash flash;
   Board board(flash);
   board.set(force_limit, 1.2345f);
@@ -525,7 +525,7 @@ TEST_CASE("stored parameters: a factory reset that meets a damaged value ends, a
   CHECK(Board(flash).held(force_limit) == default_of(force_limit));
 }
 
-TEST_CASE("stored parameters: what is restorable is the next start's, once there is one") {
+TEST_CASE("stored parameters: restorable returns the parameters of the next start after a store") {
   PlainFlash flash;
   Board board(flash);
   CHECK(board.stored.restorable() == nullptr);

@@ -145,7 +145,7 @@ TEST_CASE("HID: the newest pose can be asked for") {
   CHECK(read().is_referenced == 1);
 }
 
-TEST_CASE("HID: information tells tables, clocks and counters") {
+TEST_CASE("HID: the information report contains tables, clocks and counters") {
   DeviceBench bench;
   bench.configure();
   bench.run(5);
@@ -375,7 +375,7 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
   CHECK(head().fault == protocol::Fault::none);
 }
 
-TEST_CASE("HID: the report of the self-test, with what start-up has found") {
+TEST_CASE("HID: the self-test report contains the results of start-up") {
   DeviceBench bench;
   bench.configure();
   bench.link.self_test.note(protocol::SelfTestItem::ram, false);

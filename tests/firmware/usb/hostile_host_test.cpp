@@ -30,7 +30,7 @@ std::uint32_t transactions(DeviceBench& bench) {
 
 }  // namespace
 
-TEST_CASE("wLength around every size: exactly what was asked for, or what there is, with the right end") {
+TEST_CASE("a control read returns exactly wLength bytes, or the whole report if it is shorter") {
   DeviceBench bench;
   bench.configure();
   struct {
@@ -78,7 +78,7 @@ TEST_CASE("an answer that is a multiple of 64 ends with an empty packet only if 
   CHECK(bench.port.out(0, {}) == Handshake::ack);
 }
 
-TEST_CASE("SETUP in any packet of a data or status stage begins anew") {
+TEST_CASE("a SETUP packet in any data or status stage starts a new control transfer") {
   DeviceBench bench;
   bench.configure();
   const usb::SetupPacket get_parameters = {0xA1, 1, 0x0311, 0, 4096};
@@ -126,7 +126,7 @@ TEST_CASE("SETUPs back to back: only the last one is answered") {
   CHECK(result.data[1] == std::byte{1});
 }
 
-TEST_CASE("a host that ends a read early by its status stage is let go") {
+TEST_CASE("the device ends a control read when the host starts the status stage early") {
   DeviceBench bench;
   bench.configure();
   bench.setup(request(0xA1, 1, 0x0311, 0, 4096));

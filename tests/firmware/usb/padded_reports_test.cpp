@@ -171,7 +171,7 @@ TEST_CASE("padding: commands are the longest output report, so their length is e
   });
 }
 
-TEST_CASE("padding: what is written beyond the buffer of endpoint 0 is discarded, and touches nothing behind it") {
+TEST_CASE("padding: data beyond the buffer of endpoint 0 is discarded and does not change the memory after it") {
   PaddingBench bench;
   const auto report = claim_report(protocol::ClaimOperation::claim, claim);
   const auto before = bench.get_feature<protocol::InformationReport>(ReportId::information);
@@ -201,7 +201,7 @@ TEST_CASE("padding: a feature report that is read is filled with zeros to its de
   }
 }
 
-TEST_CASE("padding: the zeros begin where the report ends, whatever length is asked for") {
+TEST_CASE("padding: zeros follow the end of the report for every requested length") {
   DeviceBench bench;
   bench.configure();
   const auto& law = control::installed_force_law;

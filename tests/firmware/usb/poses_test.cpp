@@ -87,7 +87,7 @@ TEST_CASE("a host that asks just before a frame's end gets no report twice") {
   CHECK(poses_dropped(bench) == 0);
 }
 
-TEST_CASE("a device that is configured anew while a spare report waits gives that frame no second one") {
+TEST_CASE("a device that is configured again while a spare report waits sends no second report in that frame") {
   DeviceBench bench;
   bench.configure();
   pass_frame(bench);
@@ -122,7 +122,7 @@ TEST_CASE("a host that always asks just before a frame's end has the controller'
   CHECK(poses_dropped(bench) == 0);
 }
 
-TEST_CASE("a report tells the longest interrupt since the one before, whatever was made ready in between") {
+TEST_CASE("each pose report contains the longest interrupt time since the previous report") {
   DeviceBench bench;
   bench.configure();
   pass_frame(bench);
@@ -206,7 +206,7 @@ TEST_CASE("a sleeping host finds no old report of the controller, and a halt of 
   CHECK(read_pose(bench).has_value());
 }
 
-TEST_CASE("the frame report says when the frame began") {
+TEST_CASE("the frame report contains the start time of the frame") {
   DeviceBench bench;
   bench.configure();
   for (int i = 0; i < 3; ++i) pass_frame(bench);

@@ -85,7 +85,7 @@ TEST_CASE("status of device, interfaces and endpoints") {
   CHECK(bench.control(request(0x83, 0, 0, 0, 2)) == stall_result);
 }
 
-TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
+TEST_CASE("an endpoint can be halted and released, and restarts with data toggle 0") {
   DeviceBench bench;
   bench.configure();
   for (const int address : {0x81, 0x01, 0x82, 0x83}) {
@@ -138,7 +138,7 @@ TEST_CASE("the setting of an interface starts its endpoints again and no others"
   CHECK_FALSE(bench.port.data_toggle(0x81));
 }
 
-TEST_CASE("requests that do not exist are refused, whatever their type") {
+TEST_CASE("unknown requests of every type are refused") {
   DeviceBench bench;
   bench.configure();
   for (unsigned type = 0; type < 256; ++type)

@@ -150,8 +150,8 @@ TEST_CASE("a halted scope endpoint starts the frame again from its first byte") 
     CHECK(bench.control(clear) == done_result);
   }
   SUBCASE("cleared while it was running") { CHECK(bench.control(clear) == done_result); }
-  SUBCASE("its interface set anew") { CHECK(bench.control(request(0x01, 11, 0, 1, 0)) == done_result); }
-  SUBCASE("the device configured anew") { CHECK(bench.configure() == done_result); }
+  SUBCASE("the interface is set again") { CHECK(bench.control(request(0x01, 11, 0, 1, 0)) == done_result); }
+  SUBCASE("the device is configured again") { CHECK(bench.configure() == done_result); }
 
   CHECK_FALSE(bench.port.data_toggle(0x82));
   CHECK(header_of(read_frame(bench)).sequence == 0);

@@ -13,7 +13,7 @@ constexpr std::uint32_t address_of_protection = 1u << 7, address_of_bus = 1u << 
 
 }  // namespace
 
-TEST_CASE("the cause of a crash is a sentence, with the address where the processor tells it") {
+TEST_CASE("the cause of a crash is a sentence with the fault address if the processor recorded it") {
   CHECK(cause({.exception = 2}) == "The crystal stopped.");
   CHECK(cause({.exception = 14}) == "The main loop hung, and the watchdog expired.");
   CHECK(cause({.exception = 83}) == "Interrupt 67 occurred, although it is not used.");

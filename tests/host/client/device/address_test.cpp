@@ -86,7 +86,7 @@ TEST_CASE("the error for an unusable socket path states the reason") {
   CHECK(contains(nobody, "No program answers at unix:/nowhere/x"));
 }
 
-TEST_CASE("one arm is meant, or the sentence says which there are") {
+TEST_CASE("find_arm returns the requested arm, or raises an error that lists the arms") {
   FakeUsb usb;
   CHECK(contains(refusal({}), "No arm was found on USB"));
   CHECK(contains(refusal(parse_address("0033")), "0033 is plugged in. Plug it in"));
@@ -105,7 +105,7 @@ TEST_CASE("one arm is meant, or the sentence says which there are") {
   CHECK(device::find_arms(parse_address("virtual")).empty());
 }
 
-TEST_CASE("a server's arm is found, and found again by the address of what was found") {
+TEST_CASE("an arm at a server is found by its address, and its endpoint has the same address") {
   FakeUsbipServer server;
   const auto address = device::address_of(server.endpoint());
   const auto found = device::find_arm(parse_address(address));
@@ -115,7 +115,7 @@ TEST_CASE("a server's arm is found, and found again by the address of what was f
   CHECK(contains(refusal(parse_address(address)), "exports no arm"));
 }
 
-TEST_CASE("a server at a Unix socket is found likewise, and found again by the address of what was found") {
+TEST_CASE("an arm at a Unix socket is found by its address, and its endpoint has the same address") {
   const TemporaryDirectory directory;
   FakeUsbipServer server(device::SocketAddress{.path = directory / "usbip"});
   const auto address = device::address_of(server.endpoint());

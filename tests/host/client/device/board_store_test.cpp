@@ -114,7 +114,7 @@ TEST_CASE("a board that takes no command to store, or never ends it, is given up
   CHECK(asked == 1 + protocol::servo_rate_Hz / step + 1);
 }
 
-TEST_CASE("a session stores what was set just before, and forgets it") {
+TEST_CASE("a session stores the newest parameters and can erase the stored parameters") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   REQUIRE(eventually([&] { return is_connected(session); }));
@@ -215,7 +215,7 @@ TEST_CASE("a request to store that waits while the connection breaks is forgotte
   CHECK_FALSE(was_sent(Command::store_parameters));
 }
 
-TEST_CASE("after a loss a session tells what the device held before and what it holds now") {
+TEST_CASE("after a reconnection, a session reports the previous and the current values of the device") {
   FakeUsbipServer server;
   std::atomic<bool> is_there = true;
   device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });

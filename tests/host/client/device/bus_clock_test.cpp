@@ -30,7 +30,7 @@ TEST_CASE("the rate is measured, over days too") {
         doctest::Approx(1e-3 * (begin + days + 1000)).epsilon(1e-12));
 }
 
-TEST_CASE("a board that started again is measured anew") {
+TEST_CASE("a bus clock starts a new measurement after the board restarts") {
   device::BusClock clock(8400);
   clock.note(bus_frame(10'000, 200'000, 0));
   clock.note(bus_frame(11'000, 220'020, 0));

@@ -66,7 +66,7 @@ TEST_CASE("without a fault clearing waits for nothing, with one for a fifth of a
   CHECK(cleared_after_ms(0xFFFF'FFF0, State::fault, ready) == 200);  // the board's counter wraps during the wait
 }
 
-TEST_CASE("clearing waits until a self-test is over, but not for ever, and a fault that comes after it stays") {
+TEST_CASE("clearing a fault waits for a self-test for a limited time, and reports a fault that remains") {
   const auto tests_until = [](unsigned end_ms, State then) {
     return [end_ms, then](unsigned ms) { return ms < end_ms ? State::testing : then; };
   };

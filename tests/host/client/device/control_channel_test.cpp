@@ -38,7 +38,7 @@ TEST_CASE("a firmware that leaves has accepted the request, whether it still ans
   CHECK(usb.open_things == 0);
 }
 
-TEST_CASE("a firmware that does not leave while the force is on says so in its status, an older one by a stall") {
+TEST_CASE("detach_firmware raises an error for a refusal by status or by stall") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   SUBCASE("status") { arm.update_status = update_status(vendor_error, application_idle); }

@@ -27,7 +27,7 @@ std::string failure_at(const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("a board's status is taken from its answer, and what it leaves out is nothing") {
+TEST_CASE("the status of a board is read from its answer, and a missing field is empty") {
   std::string line =
       R"({"ok": true, "board_time_s": 1.5, "mode": "exact", "paused": true, "unmodelled": ["x\u001b[1m"]})";
   FakeControlServer server([&](const json&) { return line + "\n"; });
@@ -42,7 +42,7 @@ TEST_CASE("a board's status is taken from its answer, and what it leaves out is 
   CHECK(client.status().board_time_s == 0.0);
 }
 
-TEST_CASE("a refusal tells the command and the board's reason") {
+TEST_CASE("a refusal contains the command and the reason of the board") {
   const auto message = failure_at(R"({"ok": false, "error": "No trace runs."})");
   CHECK(contains(message, "refused \"trace\""));
   CHECK(contains(message, "No trace runs."));
@@ -146,7 +146,7 @@ TEST_CASE("a line without an end does not fill the memory") {
   CHECK(contains(message_of<device::Error>([&] { client.status(); }), "a line without an end"));
 }
 
-TEST_CASE("a hand that holds says how, one that lets go says nothing else") {
+TEST_CASE("a request for a hand that holds contains its parameters, and a request to release contains no parameters") {
   FakeControlServer server([](const json&) { return "{\"ok\": true}\n"; });
   auto client = client_of(server);
   client.hand({.holds = true, .target_m = {0.01, 0.02, 0.03}, .stiffness_N_per_m = 200, .damping_Ns_per_m = 4});

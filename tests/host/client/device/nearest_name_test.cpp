@@ -33,7 +33,7 @@ TEST_CASE("a character that is inserted, removed or exchanged is one edit") {
   CHECK(edit_distance("kitten", "sitting", all) == 3);
 }
 
-TEST_CASE("edits are counted up to the most that is asked for, and one more says that there are more") {
+TEST_CASE("edit_distance returns at most one more than the requested maximum") {
   std::vector<std::string> words{""};
   for (std::size_t i = 0; words[i].size() < 4; ++i)
     for (const char letter : {'a', 'b'}) words.push_back(words[i] + letter);

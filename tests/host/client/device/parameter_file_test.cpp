@@ -111,7 +111,7 @@ TEST_CASE("changes come in the table's order, in whichever order a file has them
   CHECK(std::is_sorted(file.changes.begin(), file.changes.end()));
 }
 
-TEST_CASE("a mistyped name gets the nearest one suggested, and what is like none gets none") {
+TEST_CASE("a mistyped parameter name produces the nearest name as a suggestion, unless no name is similar") {
   const std::string stiffness = " Did you mean wall_stiffness_N_per_m?";
   CHECK(device::parameter_suggestion("wall_stifness_N_per_m") == stiffness);
   CHECK(device::parameter_suggestion("stiffness") == stiffness);  // not "frame"
@@ -124,7 +124,7 @@ TEST_CASE("a mistyped name gets the nearest one suggested, and what is like none
         "There is no parameter nope. `inkwell parameters` lists them all.");
 }
 
-TEST_CASE("NAME=VALUE is read, and refused with what would be right") {
+TEST_CASE("parse_change reads NAME=VALUE, and its errors contain the correct form") {
   const auto [parameter, value] = device::parse_change("wall_damping_Ns_per_m=2.5");
   CHECK(parameter == Parameter::wall_damping_Ns_per_m);
   CHECK(value == 2.5f);

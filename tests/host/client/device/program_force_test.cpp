@@ -58,7 +58,7 @@ TEST_CASE("shapes keep their indices, those that are not there have no life, and
   CHECK(device::shapes_report({}).plane_count == 0);
 }
 
-TEST_CASE("whatever the firmware would refuse is refused here, with the value and its range") {
+TEST_CASE("values that the firmware would refuse are refused with the value and its limit") {
   struct Case {
     std::function<void(device::Shapes&)> change;
     std::string words;

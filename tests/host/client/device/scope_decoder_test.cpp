@@ -157,7 +157,7 @@ TEST_CASE("frames of another selection are left out without being an error") {
   CHECK(decoder.malformed_frames() == 0);
 }
 
-TEST_CASE("a new selection begins its count of periods anew") {
+TEST_CASE("a new selection restarts the period count") {
   auto decoder = decoder_for(few);
   REQUIRE(decoder.decode(full_frame(0, 1000)));
   decoder.expect(token, few);

@@ -116,7 +116,9 @@ TEST_CASE("a reported fault has the control period of its detection if this peri
   CHECK(reported_at(0xFFFF'FFFF, Fault::supply_low, false, {}) == -1);  // before the counter wrapped
 }
 
-TEST_CASE("a session notes what happens to its device, and a change at the period at which it was applied") {
+TEST_CASE(
+    "a session records events of its device, and the event of a parameter change has the control period of the "
+    "change") {
   FakeUsbipServer server;
   std::vector<device::Event> events;
   const auto event_with = [&](std::string_view part) {
@@ -237,8 +239,7 @@ TEST_CASE("a session that ends while it drives the arm lets the force fall, and 
   }
 }
 
-TEST_CASE(
-    "a session is refused while another program drives: it says so, stops the force all the same, and may take over") {
+TEST_CASE("while another program drives, a session reports this, can stop the force, and can take over") {
   FakeUsbipServer server;
   protocol::ClaimReport other{.operation = protocol::ClaimOperation::claim, .claim = 77, .process_id = 4711};
   std::strcpy(other.program, "a\x1b[31mprogram");
@@ -348,7 +349,7 @@ TEST_CASE("a transaction that the device stalls is not sent again by the connect
   CHECK(limits == 1);
 }
 
-TEST_CASE("changes behind a transaction that the device stalls reach it by the connection after it") {
+TEST_CASE("changes after a transaction that the device stalls reach the device through the next connection") {
   FakeUsbipServer server;
   std::atomic<int> restorations = 0, changes = 0;
   server.judge = [&](const protocol::ParametersReport& report) {
@@ -394,7 +395,7 @@ TEST_CASE("a command for an arm that is not there does not reach the one that co
   CHECK_FALSE(was_sent(server, protocol::Command::enable_force));
 }
 
-TEST_CASE("parameters and counters are read anew every second of the device's time") {
+TEST_CASE("a session reads parameters and counters every second of device time") {
   FakeUsbipServer server;
   std::atomic<int> readings = 0;
   std::atomic<float> radius_m = 0.0f;  // set by another program
@@ -435,7 +436,7 @@ TEST_CASE("parameters and counters are read anew every second of the device's ti
   CHECK(session.parameters_revision() == revision + 1);
 }
 
-TEST_CASE("a transaction that took effect says when") {
+TEST_CASE("the status of a session contains the control period of the last applied transaction") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   REQUIRE(eventually([&] { return is_connected(session); }));
@@ -466,7 +467,7 @@ TEST_CASE("scope frames reach the one who asked for them, counted with those tha
   CHECK(eventually([&] { return session.status().scope_frames_malformed == 1; }));
 }
 
-TEST_CASE("an arm that falls silent is said to be so while it is, and its rate of poses falls to zero") {
+TEST_CASE("a silent arm is reported while it is silent, and its pose rate is zero") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   REQUIRE(eventually([&] { return is_connected(session); }));
@@ -523,7 +524,7 @@ TEST_CASE("while there is no device it is looked for five times a second, not wi
   CHECK(count <= 1 + (Clock::now() - begin) / std::chrono::milliseconds(200));
 }
 
-TEST_CASE("a session says why it is not connected") {
+TEST_CASE("a session states the reason why it is not connected") {
   SUBCASE("nothing there") {
     device::Session session([]() -> std::optional<device::Endpoint> { return std::nullopt; });
     CHECK(eventually([&] { return !session.status().message.empty(); }));

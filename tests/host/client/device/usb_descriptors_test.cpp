@@ -38,7 +38,7 @@ bool refused_as(const Bytes& descriptor, const char* words) {
 
 }  // namespace
 
-TEST_CASE("the layout is the one of the descriptors, in whatever order and with whatever beside") {
+TEST_CASE("the USB layout is found in descriptors of any order and next to other descriptors") {
   const auto in_order =
       joined({configuration_7, hid_interface_1, hid_descriptor, hid_in, hid_out, vendor_interface_3, scope_in});
   const auto turned = joined({configuration_7,
@@ -104,7 +104,9 @@ TEST_CASE("a device without one of the three endpoints is refused by the one it 
   CHECK(refused_as(joined({configuration_7, hid_interface_1, hid_in, hid_out, vendor_interface_3}), "scope"));
 }
 
-TEST_CASE("strings: UTF-16, what is not ASCII becomes a question mark, other descriptors are empty") {
+TEST_CASE(
+    "strings: each UTF-16 character outside ASCII becomes a question mark, and a damaged string is shortened or "
+    "empty") {
   CHECK(device::parse_string(joined({{10, 3, 'A', 0, 0xB5, 0, 'z', 0x30, '~', 0}})) == "A??~");
   CHECK(device::parse_string(joined({{5, 3, 'A', 0, 'B'}})) == "A");  // half a character
   CHECK(device::parse_string(joined({{4, 2, 'A', 0}})) == "");

@@ -55,7 +55,7 @@ TEST_CASE("a serial number with control characters is shown without them, and st
   CHECK_NOTHROW(transport->claim_scope());
 }
 
-TEST_CASE("the scope is read from the arm with this serial number, where its descriptors say") {
+TEST_CASE("the scope is read from the arm with this serial number, at the endpoint of its descriptors") {
   FakeUsb usb;
   usb.add_arm("other");
   usb.add_arm("this").vendor_id = 0x1234;
@@ -121,7 +121,8 @@ TEST_CASE("a scope that was given back is another program's to claim, and may be
   CHECK(usb.open_things == 0);
 }
 
-TEST_CASE("a session goes on without the scope while another program has it, says so, and asks again") {
+TEST_CASE(
+    "a session works without the scope while another program uses it, reports this, and requests the scope again") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   answer_as_inkwell(arm);
@@ -171,7 +172,7 @@ TEST_CASE("the error for an arm without access permission contains the udev line
   CHECK(usb.open_things == 0);
 }
 
-TEST_CASE("an unplugged arm: what came is still read, then every call says so") {
+TEST_CASE("after an unplug, received data is still read, and then every call raises Disconnected") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   {
@@ -219,7 +220,7 @@ TEST_CASE("an interface that can not be had for another reason than its use is a
   CHECK(usb.open_things == 0);
 }
 
-TEST_CASE("a session whose scope breaks connects anew, and goes on with it") {
+TEST_CASE("a session reconnects after a scope failure and continues with the scope") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   answer_as_inkwell(arm);
@@ -255,7 +256,7 @@ TEST_CASE("read_pose with a negative time-out returns immediately") {
   CHECK_FALSE(arm.read_pose(-1ms));
 }
 
-TEST_CASE("a reader who stops reading the scope loses the oldest, and what is kept is bounded") {
+TEST_CASE("a reader that stops reading the scope loses the oldest transfers, and the stored amount is limited") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   const auto transport = device::open_transport(arm.endpoint());

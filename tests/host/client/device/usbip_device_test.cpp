@@ -58,7 +58,7 @@ TEST_CASE("a server may export several arms") {
   CHECK(found[1].path == "1-1");
 }
 
-TEST_CASE("a server tells by its device's path that it is a virtual board") {
+TEST_CASE("the device path at a server identifies a virtual board") {
   FakeUsbipServer server;
   server.path = "/inkwell_virtual_board/usb1/1-1";
   const auto found = device::find_usbip_devices({"127.0.0.1", server.port()});
@@ -66,7 +66,7 @@ TEST_CASE("a server tells by its device's path that it is a virtual board") {
   CHECK(found[0].is_virtual);
 }
 
-TEST_CASE("an arm on USB/IP tells who it is and streams its pose") {
+TEST_CASE("an arm on USB/IP reports its identity and streams its pose") {
   FakeUsbipServer server;
   server.information.firmware_version[1] = 3;
   const auto arm = device::Device::open(server.endpoint());
@@ -101,7 +101,7 @@ TEST_CASE("enough transfers are under way that a late reader loses nothing; the 
   CHECK(server.waiting_transfers(2) == 21);
 }
 
-TEST_CASE("a reader who does not come for a second loses the oldest poses, and what is kept is bounded") {
+TEST_CASE("a reader that pauses for one second loses the oldest poses, and the stored amount is limited") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   constexpr std::uint32_t kept = 1024, lost = 76, under_way = 32;
@@ -212,7 +212,7 @@ TEST_CASE("how long a device takes no command counts from the one that it took l
   }
 }
 
-TEST_CASE("a device that its server has lost is Disconnected, whichever transfer says so") {
+TEST_CASE("a lost device raises Disconnected for any transfer that fails") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   arm->select_signals(std::vector{protocol::Signal::force_N});
@@ -289,7 +289,7 @@ TEST_CASE("a server that lists more devices than there can be is not listened to
   CHECK(contains(message, "lists 4294967295 devices"));
 }
 
-TEST_CASE("one program works with one force law at a time, and says which is in its way") {
+TEST_CASE("one program uses one force law at a time, and the error names the law in use") {
   const auto report_of = [](const std::string& name) {  // one parameter without unit and help text
     Bytes report{std::byte{0x15}, std::byte{1}, {}, {}, {}, {}};
     const auto text = [&](const std::string& characters) {
@@ -464,14 +464,14 @@ TEST_CASE("scope frames arrive decoded; empty transfers between them are nothing
   CHECK_FALSE(arm->read_scope(1ms));
 }
 
-TEST_CASE("a transport knows the product and serial number that its device tells") {
+TEST_CASE("a transport has the product name and serial number of its device") {
   FakeUsbipServer server;
   const auto transport = device::open_transport(server.endpoint());
   CHECK(transport->endpoint().product == "Inkwell haptic arm");
   CHECK(transport->endpoint().serial_number == "0123456789ABCDEF01234567");
 }
 
-TEST_CASE("a reader who stops reading the scope says so by taking a transfer back, and is served when he goes on") {
+TEST_CASE("if the reader stops reading the scope, the transport unlinks a transfer") {
   FakeUsbipServer server;
   const auto transport = device::open_transport(server.endpoint());
   transport->claim_scope();
@@ -615,7 +615,7 @@ TEST_CASE("a device that is in use, damaged or absent is refused") {
   }
 }
 
-TEST_CASE("a server that answers nothing is given up; a device that says nothing is not") {
+TEST_CASE("a server without answers causes an error, and a device without poses does not") {
   FakeUsbipServer silent, quiet;
   silent.silent = true;
   const auto arm = device::Device::open(quiet.endpoint());

@@ -64,7 +64,7 @@ TEST_CASE("a transaction that meets a busy device for seconds is refused") {
   CHECK(contains(message_of<device::Refused>([&] { arm->set_parameters(changes); }), "force_limit_N = 2"));
 }
 
-TEST_CASE("a stall of what the device says it accepted is an error, and the transaction is not repeated") {
+TEST_CASE("a stall of an accepted transaction is an error, and the transaction is not repeated") {
   FakeUsbipServer server;
   server.stalls_accepted = true;
   const auto arm = device::Device::open(server.endpoint());
@@ -134,7 +134,7 @@ TEST_CASE("a feature report that is too short is refused with both lengths") {
   CHECK(contains(message, "Flash"));
 }
 
-TEST_CASE("forces reach the device as they were asked, numbered from 0, beside the commands") {
+TEST_CASE("forces reach the device unchanged and numbered from 0, next to commands") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   const device::ForceRequest request{
@@ -241,7 +241,7 @@ TEST_CASE("a command that finds the board busy is sent again, and given up after
                  "The board refused a command. The board dropped the request"));
 }
 
-TEST_CASE("the device is asked for no more of a report than it uses, because it pads what it sends") {
+TEST_CASE("a device object requests only as many bytes of each report as it uses") {
   FakeUsbipServer server;
   std::map<protocol::ReportId, std::vector<std::size_t>> asked;
   server.on_get = [&](protocol::ReportId id, std::size_t length) { asked[id].push_back(length); };

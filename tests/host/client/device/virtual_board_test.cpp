@@ -72,7 +72,7 @@ TEST_CASE("a virtual board that does not end when it is asked to is ended") {
   CHECK(kill(process, 0) != 0);
 }
 
-TEST_CASE("a virtual board that is killed leaves no sockets behind") {
+TEST_CASE("the sockets of a killed virtual board are removed") {
   const TemporaryDirectory parent;
   std::filesystem::create_directory(parent / "private");
   // With the umask 002, which is the default of Debian 13, the group may write the new folder.
@@ -97,7 +97,7 @@ TEST_CASE("a virtual board ends with the thread that made it") {
   CHECK(eventually([&] { return !board->is_running(); }));
 }
 
-TEST_CASE("a virtual board that does not start tells what it said") {
+TEST_CASE("the error of a virtual board that does not start contains its output") {
   CHECK(contains(failure_of(Script("echo the port is taken >&2\nexit 1\n").options()), "the port is taken"));
   CHECK(contains(failure_of(Script("exit 1\n").options()), "It said nothing"));
   CHECK(contains(failure_of(Script("echo hello\nexec sleep 60\n").options()), "did not start"));

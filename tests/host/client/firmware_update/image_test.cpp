@@ -47,7 +47,7 @@ protocol::ImageIdentity identity_of(std::string_view board, int versions_off = 0
 
 }  // namespace
 
-TEST_CASE("the firmware's image says what it is, and is whole") {
+TEST_CASE("the firmware image is complete and contains its identity") {
   const auto image = read_image(INKWELL_BUILD_DIRECTORY "/../board/inkwell.elf");
   REQUIRE(image.identity.has_value());
   CHECK(image.identity->board_name() == "omni_driver");

@@ -184,7 +184,7 @@ TEST_CASE("an image that the board chose is named for going on, since the board 
   CHECK(contains(given, "same command again: the command continues the update"));
 }
 
-TEST_CASE("a cable that is pulled leaves a board that says how to go on") {
+TEST_CASE("the error after an unplugged cable during an update states how to continue") {
   FakeLoader fake;
   fake.dies_after = 2;
   BootLoader loader(fake);
@@ -228,7 +228,8 @@ TEST_CASE("before the first erase an update ends with the board as it was") {
   CHECK(fake.did.empty());
 }
 
-TEST_CASE("of several boards one has to be named, and of none it is said what to do") {
+TEST_CASE(
+    "with several boards an update requires a serial number, and without a board the error states the next action") {
   tests::FakeUsb usb;
   CHECK(contains(message_of<device::NoDevice>([] { update({}, good_image(), {}); }), "BOOT0"));
   usb.add_arm("111");
@@ -244,7 +245,7 @@ TEST_CASE("of several boards one has to be named, and of none it is said what to
   CHECK_THROWS_AS(update({}, good_image(), {}), device::NoPermission);
 }
 
-TEST_CASE("a board stays in its firmware while the force is on, and the error says how to go on") {
+TEST_CASE("a board stays in its firmware while the force is on, and the error states how to switch it off") {
   tests::FakeUsb usb;
   auto& arm = usb.add_arm("111");
   SUBCASE("by its status") { arm.update_status = Bytes{std::byte{0x0B}, {}, {}, {}, {}, {}}; }

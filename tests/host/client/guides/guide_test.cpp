@@ -47,7 +47,7 @@ void run_into_trial(FakeArm& arm, Guide& guide) {
 
 }  // namespace
 
-TEST_CASE("nothing is powered before the user agrees, and the text says how much it will be") {
+TEST_CASE("a guide applies no current before the user agrees, and its text states the current pulses") {
   FakeArm arm;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   for (int ms = 0; ms < 2000; ++ms) arm.pass_millisecond(guide);
@@ -101,7 +101,7 @@ TEST_CASE("the shunt is that of the board that is there; of an unknown board no 
     arm.board_name() = "feather";
     sentence = "This companion does not know the board feather, but bench_modules, omni_driver";
   }
-  SUBCASE("one that does not say") {
+  SUBCASE("the firmware does not report its board") {
     arm.board_name() = "";
     sentence = "The firmware does not report its board";
   }
@@ -165,7 +165,7 @@ TEST_CASE("cancel in the trial puts the old gains back") {
   CHECK(arm.parameters() == protocol::default_parameters());
 }
 
-TEST_CASE("a device that goes away ends the guide with a sentence; what was on trial is to be put back") {
+TEST_CASE("a disconnected device ends the guide with a sentence, and the trial parameters must be restored") {
   FakeArm arm;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   run_into_trial(arm, guide);
@@ -261,7 +261,8 @@ TEST_CASE("the directions guide fails with a message if a joint does not turn wi
   CHECK(guide.outcome().find("Joint 1 did not turn") != std::string::npos);
 }
 
-TEST_CASE("joint stops need both ends before the button counts, and trust decides what is proposed") {
+TEST_CASE(
+    "joint stops require both ends of a joint before the button counts, and the trust option selects the proposal") {
   for (const auto trust : {guides::StopsTrust::limits, guides::StopsTrust::encoders}) {
     FakeArm arm;
     Guide guide = guides::stops_guide.start({.trust = trust});

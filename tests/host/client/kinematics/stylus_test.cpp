@@ -48,7 +48,7 @@ TEST_CASE("yaw, pitch and roll turn about forearm, side and stylus, with the sig
   check_close(stylus({0, 0, quarter_rad})[0], {0, 1, 0});
 }
 
-TEST_CASE("whatever the angles, the axes are a right-handed frame") {
+TEST_CASE("the stylus axes form a right-handed frame for any angles") {
   for (int i = 0; i < 200; ++i) {
     const auto angle = [i](int part) { return 0.37f * static_cast<float>((i * part) % 17 - 8); };
     const glm::mat3 rotation = kinematics::stylus_rotation({angle(3), 0.3f * angle(5), -1.0f + 0.1f * angle(7)},

@@ -38,7 +38,7 @@ TEST_CASE("an encoder's steps are noise of a hundredth of a metre a second at mo
   CHECK(largest_m_s < 0.01);
 }
 
-TEST_CASE("a gap, a time that falls and more poses than fit start anew or go by the newest") {
+TEST_CASE("a velocity fit restarts after a gap or a decreasing time, and drops the oldest of too many poses") {
   kinematics::VelocityFit fit;
   for (int i = 0; i < 10; ++i) fit.add(1e-3 * i, {1e-3 * i, 0, 0});
   fit.add(1.0, {5, 0, 0});

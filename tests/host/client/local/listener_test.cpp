@@ -78,7 +78,7 @@ TEST_CASE("only its user can connect to a Unix socket, and it goes with its list
   CHECK(fs::is_empty(directory.path()));
 }
 
-TEST_CASE("a socket that a program left behind is replaced, and nothing else is") {
+TEST_CASE("a listener replaces a socket of an exited program and no other file") {
   const TemporaryDirectory directory;
   const fs::path path = directory / "socket";
   leave_behind(path);

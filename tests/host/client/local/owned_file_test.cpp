@@ -81,7 +81,7 @@ class Child {
 
 }  // namespace
 
-TEST_CASE("a file has one owner, whatever name the second one uses, before and after it was replaced") {
+TEST_CASE("a file has one owner under any of its names, before and after a replacement") {
   const TemporaryDirectory directory;
   const fs::path file = directory / "file", symbolic_link = directory / "link", hard_link = directory / "hard",
                  moved = directory / "moved";

@@ -123,7 +123,7 @@ TEST_CASE("samples that are far apart are drawn at their own times") {
   CHECK(line_at(read_png(directory.file("a.png")), 0, blue));
 }
 
-TEST_CASE("there is one pane for each unit, and its axis says quantity and unit") {
+TEST_CASE("a figure has one pane per unit, and the axis label contains quantity and unit") {
   const auto panes = figure_panes({Signal::position_x_m, Signal::force_N, Signal::penetration_x_m, Signal::duty_1,
                                    Signal::force_x_N, Signal::duty_2});
   REQUIRE(panes.size() == 3);
@@ -137,7 +137,7 @@ TEST_CASE("there is one pane for each unit, and its axis says quantity and unit"
   CHECK(cycles[0].label == "cycles");  // three quantity names do not fit next to the axis
 }
 
-TEST_CASE("a figure grows with its panes and shows what is asked for") {
+TEST_CASE("a figure is higher with more panes, and shows only the selected signals and time") {
   const TemporaryDirectory directory;
   const auto recording = wave(30'000);
   draw_figure(recording, {}, directory / "all.png");
@@ -173,7 +173,7 @@ TEST_CASE("every line is drawn in its colour, at the height of its value, in the
   CHECK_FALSE(line_at(image, 1, vermilion));
 }
 
-TEST_CASE("every line of a full pane is named beside it") {
+TEST_CASE("every line of a full pane has a label next to the pane") {
   const TemporaryDirectory directory;
   std::vector<std::pair<Quantity, float>> currents;
   for (int i = 0; i < 3; ++i) {

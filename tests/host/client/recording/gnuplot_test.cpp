@@ -45,7 +45,7 @@ std::string printed_by_gnuplot(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("gnuplot prints a quoted text as it is, whatever is in it") {
+TEST_CASE("gnuplot prints quoted printable text unchanged") {
   std::string all;
   for (char c = ' '; c <= '~'; ++c) all += {c, '7'};
   for (const std::string& text : {all, std::string("Ärm “腕” it's \"here\""), std::string("'"), std::string("\\"),

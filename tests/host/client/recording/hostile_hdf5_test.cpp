@@ -213,7 +213,7 @@ TEST_CASE("a scalar dataset must be one number of its class") {
   });
 }
 
-TEST_CASE("a column must have one dimension, its class, and content in the file for what it declares") {
+TEST_CASE("a column must have one dimension, the right class, and enough data in the file") {
   const hid_t length = column_of(samples);
   const auto extend = [](hid_t f, const char* path) {
     const hid_t column = H5Dopen2(f, path, H5P_DEFAULT);

@@ -39,8 +39,7 @@ TEST_CASE("a recording is laid over another one from its begin on") {
   CHECK(overlay.compared_with(base.samples(20, 30)).values.front() == 20.0f);
 }
 
-TEST_CASE(
-    "two recordings have the names of their files, and with the folders that tell them apart if these are the same") {
+TEST_CASE("two recordings are named after their files, and with their folders if the files have the same name") {
   const auto names = [](const char* one, const char* other) {
     const auto [first, second] = distinct_names(one, other);
     return first + " " + second;
@@ -72,7 +71,7 @@ TEST_CASE("a mark that both hold aligns them") {
   CHECK(Overlay(base, over, "touch").compared_with(over.samples(0, 1)).values[0] == 20.0f);
 }
 
-TEST_CASE("a gap stays a gap, and what is far apart holds until the next sample") {
+TEST_CASE("an overlay retains gaps and holds sparse samples until the next sample") {
   const auto base = ramp("base", 0, 100);
   auto gap = ramp("gap", 0, 10);
   gap.periods.back() = 20;

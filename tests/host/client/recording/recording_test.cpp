@@ -380,7 +380,7 @@ TEST_CASE("a recording can be read while a process runs that was started meanwhi
   check_is_whole(read(file), 1, 9'000);
 }
 
-TEST_CASE("a full disk ends the recording with a sentence and keeps what was written") {
+TEST_CASE("a full disk ends the recording with a sentence, and the written samples remain") {
   const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
     CAPTURE(name);

@@ -81,7 +81,7 @@ TEST_CASE("the speed of a replay is kept, and bounded") {
   CHECK(replay.speed() == Replay::speed_minimum);
 }
 
-TEST_CASE("after a seek the scope is filled with what came before the new position") {
+TEST_CASE("after a seek, the replay returns the samples before the new position") {
   Replay replay(recorded({Signal::force_N}, {{500, 20'001}}));
   CHECK(replay.advance(0, 0.1).is_restart);
   CHECK_FALSE(replay.advance(0, 0.1).is_restart);
@@ -108,7 +108,7 @@ TEST_CASE("a gap of the recording is a gap of the replay") {
   CHECK(passed.blocks[1].lost_before == 20);
 }
 
-TEST_CASE("the pose at a position is what the device reported then") {
+TEST_CASE("the pose at a position is the recorded pose at this time") {
   Replay replay(recorded(standard_signals(), {{2000, 1001}}));
   replay.seek(0.02);  // 400 control periods
   const auto pose = replay.pose();

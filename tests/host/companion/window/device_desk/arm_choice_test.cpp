@@ -40,7 +40,7 @@ TEST_CASE("of several arms none is taken that was not named") {
   CHECK(picked(named, {a}) == "none");
 }
 
-TEST_CASE("an arm that was taken alone is taken again beside another one, which is no stand-in for it") {
+TEST_CASE("an arm that was chosen alone is chosen again next to another arm, and the other arm never replaces it") {
   ArmChoice choice("");
   CHECK(picked(choice, {a}) == "A");
   CHECK(picked(choice, {b, a}) == "A");

@@ -40,7 +40,7 @@ TEST_CASE("without a device nothing can be edited") {
   CHECK_FALSE(editor.can_undo());
 }
 
-TEST_CASE("an edit shows at once, is sent once, and gives way to what the device holds") {
+TEST_CASE("an edit is shown immediately, is sent once, and is replaced by the value of the device") {
   ParameterEditor editor;
   AgreeableDevice device;
   device.exchange(editor);
@@ -94,7 +94,7 @@ TEST_CASE("a drag that comes back to its start is no step") {
   CHECK_FALSE(editor.can_undo());
 }
 
-TEST_CASE("a new edit after an undo forgets what was undone") {
+TEST_CASE("a new edit after an undo discards the undone edit") {
   ParameterEditor editor;
   AgreeableDevice device;
   device.exchange(editor);

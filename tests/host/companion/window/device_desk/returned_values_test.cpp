@@ -29,7 +29,7 @@ window::DeviceView set(window::DeviceView view, Parameter parameter, float value
 
 }  // namespace
 
-TEST_CASE("nothing is said before the first reconnection, and nothing while the device is away") {
+TEST_CASE("no message is shown before the first reconnection or while the device is disconnected") {
   ReturnedValues values;
   values.follow({}, 0.0);
   CHECK_FALSE(values.is_shown());
@@ -70,7 +70,7 @@ TEST_CASE("changed values are shown with their previous values until the user di
   CHECK_FALSE(values.waits_for_user());
 }
 
-TEST_CASE("a value that was changed since is settled, whatever it became") {
+TEST_CASE("a value that was changed after the reconnection is no longer listed") {
   ReturnedValues values;
   const auto view = returned({{stiffness, 1500.0f}, {damping, 3.0f}});
   values.follow(view, 0.0);

@@ -36,7 +36,7 @@ TEST_CASE("stored_title states in words how many values are not stored") {
   CHECK(window::not_stored(view) == std::vector{Parameter::force_limit_N, Parameter::link_2_m});
 }
 
-TEST_CASE("the window does not ask the board to store what it would refuse, and says why") {
+TEST_CASE("why_storing_waits returns the reason why the board would refuse to store") {
   const auto remedy = [](protocol::StoreResult result) { return std::string(info(result).remedy); };
   CHECK_FALSE(window::why_storing_waits({}).empty());
   for (const auto state : {State::unreferenced, State::ready, State::fault})

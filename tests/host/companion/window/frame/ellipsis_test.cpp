@@ -33,7 +33,7 @@ TEST_CASE("a window is as many points big as it was asked for, but no bigger tha
   CHECK(window_size({1280, 800}, 1.5f, std::nullopt) == ScreenSize{1920, 1200});
 }
 
-TEST_CASE("text gives way where a display has no room for the smallest window, but not below what can be read") {
+TEST_CASE("the text scale is reduced on a display that is too small for the window, but not below 1") {
   CHECK(fitting_scale(2.0f, ScreenSize{1920, 1200}) == 2.0f);
   CHECK(fitting_scale(2.0f, ScreenSize{1350, 840}) == doctest::Approx(1.5f));
   CHECK(fitting_scale(2.0f, ScreenSize{1800, 560}) == 1.0f);

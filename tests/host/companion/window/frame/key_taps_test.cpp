@@ -16,7 +16,7 @@ TEST_CASE("a key that is tapped between two frames is down for one of them") {
   CHECK_FALSE(down[3]);
 }
 
-TEST_CASE("a key that is held stays with whoever keeps its state") {
+TEST_CASE("KeyTaps leaves a held key pressed") {
   KeyTaps taps;
   std::array<bool, 8> down{};
   taps.note(5);

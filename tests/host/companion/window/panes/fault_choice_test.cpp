@@ -25,7 +25,7 @@ std::vector<std::string> names_found(std::string_view search) {
 
 }  // namespace
 
-TEST_CASE("a search looks for each of its words in name, part and help") {
+TEST_CASE("a search finds each of its words in the name, the part or the help text") {
   using Names = std::vector<std::string>;
   CHECK(names_found("").size() == protocol::injection_table.size());
   CHECK(names_found("  ").size() == protocol::injection_table.size());

@@ -44,7 +44,7 @@ std::vector<unsigned> numbers(const FaultLog& log) {
 
 }  // namespace
 
-TEST_CASE("a fault is to come, in, and over, whoever put it in") {
+TEST_CASE("each fault in the log is planned, then active and then over") {
   FaultLog log;
   log.take(answer(2.0, {to_come(1, 3.0)}));
   REQUIRE(log.faults().size() == 1);
@@ -83,7 +83,7 @@ TEST_CASE("the log lists all active faults, but only the newest faults that are 
   CHECK(numbers(log) == std::vector<unsigned>{1, 4, 5, 6, 7});
 }
 
-TEST_CASE("a board that starts anew begins a new log") {
+TEST_CASE("a restart of the board starts a new log") {
   FaultLog log;
   log.take(answer(9.0, {injection(1, 8.0)}));
   log.notice({Fault::supply_low, 150'000});
@@ -96,7 +96,7 @@ TEST_CASE("a board that starts anew begins a new log") {
   CHECK(log.faults()[0].phase == Phase::in);
 }
 
-TEST_CASE("a noticed fault is set beside each that came before, with the time to the end of its control period") {
+TEST_CASE("a reported fault is assigned to each earlier injection, with the time until the end of its control period") {
   FaultLog log;
   log.take(answer(2.0, {injection(1, 1.5), injection(2, 1.999), to_come(3, 2.5)}));
   log.notice({Fault::motor_implausible, 20'100});  // began at 2.005 s
@@ -123,7 +123,7 @@ TEST_CASE("the log shows only the first reported fault of an injection") {
   CHECK(log.faults()[0].noticed->fault == Fault::supply_low);
 }
 
-TEST_CASE("it waits for an answer that has come to the control period, but not for ever") {
+TEST_CASE("the log waits for an answer that reaches the control period, but not indefinitely") {
   FaultLog log;
   log.take(answer(2.0, {injection(1, 1.9)}));
   log.notice({Fault::watchdog, 20'500});
@@ -149,7 +149,7 @@ TEST_CASE("control periods are as long as the board's crystal makes them") {
   CHECK(*log.faults()[0].noticed->after_s == doctest::Approx(1.1 - 999 * slow_s));
 }
 
-TEST_CASE("a core that was kept from its interrupt counts too few, until it starts anew") {
+TEST_CASE("after a core stall, the log has no delay for a reported fault until the board restarts") {
   FaultLog log;
   log.take(answer(2.0, {injection(1, 1.9, "core_stalled")}));
   log.notice({Fault::servo_overrun, 17'000});  // earlier than the injection by the board's counter

@@ -8,7 +8,7 @@
 using namespace inkwell;
 using protocol::Signal;
 
-TEST_CASE("a pane's signals come behind the scope's, each once, and as many as a selection holds") {
+TEST_CASE("joined appends the signals of a pane to the signals of the scope without repetition, up to the maximum") {
   using Signals = std::vector<Signal>;
   CHECK(window::joined({Signal::force_N, Signal::duty_1}, Signals{Signal::supply_V, Signal::force_N}) ==
         Signals{Signal::force_N, Signal::duty_1, Signal::supply_V});

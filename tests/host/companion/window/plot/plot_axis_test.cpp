@@ -28,7 +28,7 @@ TEST_CASE("a range holds its data, also if they are constant or missing") {
   }
 }
 
-TEST_CASE("around a plain zero an axis shows what is usual of the unit") {
+TEST_CASE("an axis around zero shows a usual range of its unit") {
   for (const double none : {0.0, std::nan("")}) {
     const AxisRange range = enclosing_range(none, none, extent_around_zero("m"));
     CHECK(range.minimum == doctest::Approx(-0.01));
@@ -48,7 +48,7 @@ TEST_CASE("an axis grows at once and shrinks only after a while") {
   CHECK(axis.update(0.0, 1.0, 2.0).maximum < 2.0);
 }
 
-TEST_CASE("the room around a constant gives way to the first change, however small") {
+TEST_CASE("the range around a constant is reduced at the first change") {
   SteadyRange axis;
   axis.update(0.0, 0.0, 0.0);
   CHECK(axis.update(0.0, 0.003, 0.1).extent() < 0.01);
