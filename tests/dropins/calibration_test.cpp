@@ -33,7 +33,7 @@ TEST_CASE("an arm with a fault that does not affect its encoders is calibrated w
   hdDisableDevice(device);
 }
 
-TEST_CASE("an arm that lost counts does not know any more where it is") {
+TEST_CASE("an arm that lost counts is no longer calibrated") {
   Held held;
   held.control.inject({.fault = "encoder_slip", .of = "1", .amount = 20'000});
   CHECK(until([] { return hdCheckCalibration() != HD_CALIBRATION_OK; }));

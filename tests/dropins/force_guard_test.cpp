@@ -30,7 +30,7 @@ struct Course {
   }
 };
 
-TEST_CASE("a force comes by its ramp, keeps its direction, and ends at the maximum") {
+TEST_CASE("a force rises along its ramp, retains its direction, and stops at the maximum") {
   Course course;
   course.step({});
   const auto early = course.step({0, 30, 40}).force_N;

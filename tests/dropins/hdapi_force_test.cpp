@@ -193,7 +193,7 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
   }));
 }
 
-TEST_CASE("a force that was set once ends when no poses come, and is not there when they are back") {
+TEST_CASE("a force that was set once ends when no poses arrive, and does not return with the poses") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   int frames = 0;
@@ -223,7 +223,7 @@ TEST_CASE("a force that was set once ends when no poses come, and is not there w
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
 }
 
-TEST_CASE("another program's stop is reported once, and the force stays off until the program asks for it again") {
+TEST_CASE("the stop of another program is reported once, and the force stays off until the program enables it again") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   const auto push = [] { set_force({1, 0, 0}); };

@@ -177,7 +177,7 @@ TEST_CASE("the page's program pulls the hand to the middle of the box until Ente
   CHECK(well.wait() == 0);
 }
 
-TEST_CASE("a program that leaves main() with a callback listed ends well, though its objects take their time to go") {
+TEST_CASE("a program that leaves main() with a scheduled callback exits normally, although its destructors are slow") {
   Board board;
   board.hold();
   RunningProgram leaving({program("drop-in-leaves")});

@@ -41,7 +41,7 @@ Moved moved_by_halt(std::uint32_t stops) {
 }  // namespace
 
 TEST_SUITE("virtual chip: debugger halt") {
-  TEST_CASE("SysTick stands with the core, the RTC and CAN go on") {
+  TEST_CASE("a halt of the core stops SysTick, but not the RTC and CAN") {
     const Moved moved = moved_by_halt(nothing);
     CHECK(moved.systick_counts < 2'000);  // at 16 MHz: counts outside the halt
     CHECK(moved.rtc_cycles >= 640);

@@ -60,7 +60,7 @@ TEST_SUITE("virtual board: chip") {
     }
   }
 
-  TEST_CASE("the slowest flash takes twice as long to erase, and 100 us for a word") {
+  TEST_CASE("the slowest flash needs twice the time for an erase, and 100 us for a word") {
     SlowChip test(true);
     test.run_for(1.2);
     REQUIRE(test.result(0) == finished);
@@ -68,7 +68,7 @@ TEST_SUITE("virtual board: chip") {
     CHECK(test.result(5) / cycles_per_us == doctest::Approx(200).epsilon(0.05));
   }
 
-  TEST_CASE("a power cut in the middle of a word leaves some of its bits, and nothing else is touched") {
+  TEST_CASE("a power loss while the flash writes a word leaves some of its bits and changes no other word") {
     std::set<std::uint32_t> left;
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
       SlowChip test(false, seed);

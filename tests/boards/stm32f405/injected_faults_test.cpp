@@ -37,7 +37,7 @@ TEST_CASE("an exception is late by the injected delay in each period until the d
   }
 }
 
-TEST_CASE("a shorted pin has the level of the short, whatever the chip drives") {
+TEST_CASE("a shorted pin has the level of the short, regardless of the output of the chip") {
   ChipUnderTest test("converters");  // toggles B2
   std::array<unsigned, 3> seen{};
   const auto look = [&] {
@@ -85,7 +85,7 @@ TEST_CASE("a converter that has stopped starts no conversion; its register keeps
   CHECK(test.result(1) - handled <= 1);
 }
 
-TEST_CASE("a DMA that takes no request moves nothing, and goes on when it may") {
+TEST_CASE("a stopped DMA transfers no data") {
   ChipUnderTest test("converters");
   test.run_for(0.003);
   test.chip.stop_dma(true);

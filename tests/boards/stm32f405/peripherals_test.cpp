@@ -68,7 +68,9 @@ TEST_SUITE("virtual chip: peripherals") {
     }
   }
 
-  TEST_CASE("the break input switches the outputs off at once and without the processor, until it is asked for again") {
+  TEST_CASE(
+      "the break input switches the outputs off immediately without the processor, until the firmware enables them "
+      "again") {
     ChipUnderTest test("break_input");
     auto& pins = test.chip.input_pins();
     pins.drive('A', 6, PinLevel::high);
@@ -147,7 +149,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(6) - before > 0.7 * undisturbed);
   }
 
-  TEST_CASE("a stream's interrupt comes when its last item has been moved, in fast mode too") {
+  TEST_CASE("the interrupt of a stream occurs after its last transfer, even in fast mode") {
     const auto first_interrupt = [](Mode mode) {
       ChipUnderTest test("converters", mode);
       test.run_for(0.003);
@@ -158,7 +160,8 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(first_interrupt(Mode::fast) < first_interrupt(Mode::exact) + ticks(1.5e-6));
   }
 
-  TEST_CASE("a reading holds some of the channel before until its source has charged the sampling capacitor") {
+  TEST_CASE(
+      "a conversion contains a part of the previous channel if the source charges the sampling capacitor too slowly") {
     constexpr double switch_ohm = 6000, sampling_F = 4e-12, adc_Hz = 21e6;
     const auto counts = [](double volts) { return volts / 3.3 * 4096; };
     // C3 and C4 are sampled alternately for 84 cycles. C0 is sampled between C3 and C4 for 3 cycles.

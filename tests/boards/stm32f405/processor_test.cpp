@@ -67,7 +67,7 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.chip.run_until(test.chip.now() + ticks(10e-6)) == Stop::time_reached);
   }
 
-  TEST_CASE("division by zero gives 0, or a fault if firmware asks for it") {
+  TEST_CASE("a division by zero returns 0, or raises a fault if the firmware enables this") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("division", mode);

@@ -23,7 +23,7 @@ struct Looping : ChipUnderTest {
 }  // namespace
 
 TEST_SUITE("virtual chip: stalled thread") {
-  TEST_CASE("the thread stands for as long as asked, exceptions come all the time, then it goes on") {
+  TEST_CASE("a stalled thread stops for the requested time while exceptions continue, and then continues") {
     Looping test;
     test.run_to(1);
     const auto handled = test.handled(), looped = test.looped();
@@ -35,7 +35,7 @@ TEST_SUITE("virtual chip: stalled thread") {
     CHECK(test.looped() > looped);
   }
 
-  TEST_CASE("where exceptions are held back it goes on, and stands once they are not") {
+  TEST_CASE("a stalled thread continues while exceptions are masked, and stops afterwards") {
     for (const std::uint32_t holds : {2, 4}) {
       CAPTURE(holds);
       Looping test;

@@ -159,7 +159,7 @@ TEST_SUITE("virtual chip: timer inputs") {
     CHECK(inputs.read(tim3 + cnt) == 1);
   }
 
-  TEST_CASE("without its divider the external trigger is as its pin, however the divider stood") {
+  TEST_CASE("without its divider, the external trigger follows its pin for any earlier state of the divider") {
     Inputs inputs;
     inputs.write(tim3 + smcr, ece | 1 << 12);
     inputs.write(tim3 + cr1, cen);
@@ -181,7 +181,7 @@ TEST_SUITE("virtual chip: timer inputs") {
     CHECK(inputs.read(tim3 + cnt) == 1);
   }
 
-  TEST_CASE("a counter that counts edges goes on where it stood when it gets its own clock back") {
+  TEST_CASE("a counter of external edges continues from its count when its internal clock is selected again") {
     Inputs inputs;
     inputs.write(tim3 + smcr, ece);
     inputs.write(tim3 + cr1, cen);

@@ -154,14 +154,14 @@ TEST_SUITE("virtual chip: rules of silicon") {
       CHECK(faulty.converted(1) == 0);
       CHECK(faulty.converted(2) == 0);
     }
-    SUBCASE("a converter that is too fast, not stable or at a digital pin gives nonsense") {
+    SUBCASE("a converter that is too fast, not stable or at a digital pin returns wrong values") {
       for (const unsigned number : {10u, 12u, 13u}) CHECK(Planted(number).converted(0) != one_volt);
     }
     SUBCASE("an internal reference that is off or hurried gives nonsense") {
       CHECK(Planted(33).test.result(8) == 0);
       for (const unsigned number : {34u, 35u}) CHECK(Planted(number).test.result(8) != reference);
     }
-    SUBCASE("the host sees no device without pins, and hears none without 48 MHz") {
+    SUBCASE("the host detects no device without pins and receives no answer without 48 MHz") {
       CHECK_FALSE(Planted(3).host_is_answered());
       CHECK_FALSE(Planted(4).host_is_answered());
     }

@@ -107,7 +107,7 @@ TEST_CASE("every signal of the table is written") {
                   protocol::signal_table[i].name << " has no line in Controller::write_signals()");
 }
 
-TEST_CASE("the force ramps in over force_ramp_s and goes off at once") {
+TEST_CASE("the force ramps up over force_ramp_s and switches off immediately") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::ready_controller(settings);
   Samples samples = tests::samples_at_rest();

@@ -131,7 +131,7 @@ TEST_CASE("a reading near the rail of a current sensor raises over_current for e
     }
 }
 
-TEST_CASE("a current limit that is restored before the bound has come down holds again at once") {
+TEST_CASE("a current limit that is restored before the bound has fallen applies again immediately") {
   Settings settings = settings_near_wall();
   settings.limits.over_current_A.fill(2.0f);
   const Settings before = settings;
@@ -146,7 +146,7 @@ TEST_CASE("a current limit that is restored before the bound has come down holds
   CHECK(controller.fault() == Fault::none);
 }
 
-TEST_CASE("a current limit that is lowered gives the current time to follow, and then holds for it") {
+TEST_CASE("a lowered current limit raises no fault while the current follows, and then applies") {
   Settings settings = settings_near_wall();
   settings.motor_model.resistance_ohm = {};  // otherwise the motor check reports the current and its jumps
   Controller controller = tests::active_controller(settings);

@@ -151,7 +151,7 @@ TEST_CASE("a closed inkwell's switch far from the inkwell is a fault, with the f
   }
 }
 
-TEST_CASE("a switch that was closed elsewhere gives no reference before it was seen open") {
+TEST_CASE("a switch that closed outside the inkwell sets no reference before it opens") {
   const Settings settings = free_space();
   Controller controller = tests::ready_controller(settings);
   Samples samples = tests::samples_at_rest();

@@ -52,7 +52,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a current limit that is lowered while the self-test's pulses run holds at once") {
+TEST_CASE("a current limit that is lowered during self-test pulses applies immediately") {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     CAPTURE(motor);
     Settings settings = plain_settings();

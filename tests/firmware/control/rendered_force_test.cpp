@@ -102,7 +102,7 @@ TEST_CASE("a program's force adds to the walls") {
   CHECK(signals[Signal::force_sources] == 5.0f);
 }
 
-TEST_CASE("the hand feels no source from the period on in which the force goes off") {
+TEST_CASE("no force source is reported from the period in which the force switches off") {
   StillArm arm;
   const control::Shapes shapes = arm.floor(0.001f);
   arm.controller.replace_shapes(shapes);
@@ -141,7 +141,7 @@ TEST_CASE("a program that replaces the walls, and returns to them, is felt witho
   CHECK(arm.controller.force_sources() == bit(ForceSource::walls));
 }
 
-TEST_CASE("a plane that comes, moves by 5 mm or goes under a pressing hand never kicks") {
+TEST_CASE("a plane that appears, moves by 5 mm or disappears under a pressing hand causes no kick") {
   StillArm arm;
   const float limit_N = 0.05f * arm.settings.force_limit_N;
   arm.drive({}, ForceMode::instead_of_walls);
@@ -198,7 +198,7 @@ TEST_CASE("parameters that change under a pressing hand never kick") {
   CHECK(arm.force_N().z == doctest::Approx(1.5f).epsilon(2e-3));
 }
 
-TEST_CASE("a force limit that is raised lets the force grow without a kick, and one that is lowered holds at once") {
+TEST_CASE("a raised force limit increases the force without a kick, and a lowered limit applies immediately") {
   StillArm arm;
   arm.change(Parameter::force_limit_N, 0.0f);
   arm.run(1);

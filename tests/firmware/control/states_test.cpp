@@ -237,7 +237,7 @@ TEST_CASE("the brake ends with the fault, and with a bridge that cannot be trust
   CHECK_FALSE(tests::run(other, samples, settings, 1).brake);
 }
 
-TEST_CASE("no force comes on while the board leaves for its boot loader, and it goes if it was on") {
+TEST_CASE("the force switches off when the board leaves for its boot loader, and cannot be switched on meanwhile") {
   const Settings settings = free_space();
   const Samples samples = tests::samples_at_rest();
   Controller controller = tests::active_controller(settings);
@@ -253,7 +253,7 @@ TEST_CASE("no force comes on while the board leaves for its boot loader, and it 
   CHECK(controller.state() == State::ready);
 }
 
-TEST_CASE("a fault that stands while the board leaves for its boot loader stands when it stays after all") {
+TEST_CASE("a fault remains if the board leaves for its boot loader and then stays in its firmware") {
   const Settings settings = free_space();
   Samples samples = tests::samples_at_rest();
   Controller controller = tests::active_controller(settings);

@@ -27,7 +27,7 @@ bool is_accepted(const CommandReport& report) {
 
 }  // namespace
 
-TEST_CASE("sound commands are decoded as they are") {
+TEST_CASE("valid commands are decoded unchanged") {
   for (const Command command :
        {Command::heartbeat, Command::enable_force, Command::disable_force, Command::clear_fault, Command::stop}) {
     const CommandReport report = make(command, 77);
@@ -54,7 +54,7 @@ TEST_CASE("a command of another length, report, version or kind is ignored") {
     CHECK_FALSE(is_accepted(make(static_cast<Command>(command))));
 }
 
-TEST_CASE("a selection holds known signals, at most as many as fit") {
+TEST_CASE("a selection contains only known signals, up to the maximum number") {
   CommandReport report = make(Command::select_signals);
   CHECK(is_accepted(report));  // an empty selection stops the scope
   report.selection.count = protocol::scope_signals_maximum;
@@ -131,7 +131,7 @@ TEST_CASE("a full queue refuses a command, retains the queued commands and recor
   CHECK(queue.pop() == nullptr);
 }
 
-TEST_CASE("a waiting command is seen until it is taken") {
+TEST_CASE("a waiting command is reported until it is removed") {
   CommandQueue queue;
   CHECK(queue.push(make(Command::heartbeat)));
   CHECK(queue.push(make(Command::enable_force)));
@@ -142,7 +142,7 @@ TEST_CASE("a waiting command is seen until it is taken") {
   CHECK_FALSE(queue.waiting(Command::enable_force));
 }
 
-TEST_CASE("when the host is gone, the next thing that happens is that the force goes off") {
+TEST_CASE("after the loss of the host, the next command of the queue is a stop") {
   CommandQueue queue;
   CHECK(queue.push(make(Command::heartbeat, 5)));
   queue.pop();

@@ -43,7 +43,7 @@ ShapesReport one_plane() {
   return report;
 }
 
-TEST_CASE("a sound force is ready for the interrupt once") {
+TEST_CASE("a valid force is returned to the interrupt once") {
   link::ProgramRequests requests;
   CHECK(requests.take_force() == nullptr);
   ForceReport report = force(7, -2.5f);
@@ -193,7 +193,7 @@ TEST_CASE("shapes are busy while the interrupt has not taken the previous ones, 
   CHECK(requests.accept_shapes(bytes(none)) == RequestResult::accepted);
 }
 
-TEST_CASE("the ticket of shapes is known if they are of this version and long enough to hold it") {
+TEST_CASE("the ticket of shapes is read if the report has this version and contains the ticket") {
   ShapesReport report = one_plane();
   report.ticket = 0x12345678;
   CHECK(link::ticket_of_shapes(bytes(report)) == 0x12345678);
@@ -203,7 +203,7 @@ TEST_CASE("the ticket of shapes is known if they are of this version and long en
   CHECK(link::ticket_of_shapes(bytes(report)) == 0);
 }
 
-TEST_CASE("a slot without life may hold anything") {
+TEST_CASE("a slot without a life may contain any values") {
   ShapesReport report = one_plane();
   report.planes[0].surface = {};
   report.planes[0].normal[0] = not_a_number;

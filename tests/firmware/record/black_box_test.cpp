@@ -392,7 +392,7 @@ TEST_CASE("rows of an image with other tables are not shown by this one") {
   CHECK(box.report().fault == Fault::none);
 }
 
-TEST_CASE("a request for rows of another version or too short is malformed, and the one before holds") {
+TEST_CASE("a request for rows with another version or too few bytes is malformed, and the previous request remains") {
   Board board;
   meet_fault(board);
   CHECK(result_of(board.box->rows()) == protocol::RequestResult::accepted);

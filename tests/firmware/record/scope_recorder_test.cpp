@@ -129,7 +129,7 @@ void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, 
 
 }  // namespace
 
-TEST_CASE("14 floats go out in full and come back as they were") {
+TEST_CASE("14 floats are sent in full and decoded unchanged") {
   check_round_trip(select(14), ScopeEncoding::full, 300);
 }
 
@@ -142,7 +142,7 @@ TEST_CASE("narrow signals between wide ones come back within half a step") {
   check_round_trip(selection, ScopeEncoding::full, 1000);
 }
 
-TEST_CASE("the experiment's 31 signals go out as changes and come back as they were") {
+TEST_CASE("the 31 signals of the experiment are sent as changes and decoded unchanged") {
   check_round_trip(select(31), ScopeEncoding::changes, 300);
 }
 
@@ -341,7 +341,7 @@ TEST_CASE("the scope is off until signals are selected, and after none are") {
   CHECK(scope.oldest_frame().empty());
 }
 
-TEST_CASE("a frame of changes keeps within its room, however many values change at its end") {
+TEST_CASE("a frame of changes stays within its size for any number of changed values at its end") {
   const SignalSelection selection = select(32);
   link::Link& fresh = test::fresh_link();
   link::ScopeRecorder& scope = fresh.scope;

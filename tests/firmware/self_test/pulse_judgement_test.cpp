@@ -175,7 +175,7 @@ TEST_CASE("the bridge loss is the measured value, both below and above the nomin
   CHECK(more.bridge_loss_part[1] == doctest::Approx(0.036).scale(0).epsilon(0.04));
 }
 
-TEST_CASE("a bridge that seems to give a little, by errors of its sensor, takes none") {
+TEST_CASE("a bridge with a negative loss from sensor errors has a loss of zero") {
   const auto judgement = with_second([](auto& motor) { motor.dead_V *= -0.2f; });
   CHECK(judgement.bridges[1].result == SelfTestResult::passed);
   CHECK(judgement.bridges[1].figure < -0.05f);

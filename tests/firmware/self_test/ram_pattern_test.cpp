@@ -32,7 +32,7 @@ bool is_intact_with(Change change) {
   return link::retains_pattern(std::span<Word>(memory), std::span(room));
 }
 
-TEST_CASE("sound memory keeps the pattern, and has its content afterwards") {
+TEST_CASE("healthy memory retains the pattern and has its previous content afterwards") {
   Memory memory{};
   for (std::uint32_t i = 0; i < memory.size(); ++i) memory[i] = 1000 + i;
   std::array<std::uint32_t, 4> room;
@@ -40,7 +40,7 @@ TEST_CASE("sound memory keeps the pattern, and has its content afterwards") {
   for (std::uint32_t i = 0; i < memory.size(); ++i) CHECK(memory[i] == 1000 + i);
 }
 
-TEST_CASE("a bit that stands still is found, whichever, high or low, first word or last") {
+TEST_CASE("each stuck bit is detected, high or low, in the first, middle and last words") {
   for (const std::size_t index : {std::size_t{0}, std::size_t{3}, std::size_t{4}, std::size_t{9}})
     for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
       CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[index].stuck_high = bit; }));

@@ -14,7 +14,7 @@ using protocol::SelfTestResult;
 using protocol::State;
 using Board = test::SelfTestBoard;
 
-TEST_CASE("a sound board tests itself once after its start, in less than 20 ms, and every item passes") {
+TEST_CASE("a healthy board runs one self-test after its start in less than 20 ms, and every item passes") {
   Board board;
   board.run_while(State::starting);
   CHECK(board.controller.state() == State::testing);

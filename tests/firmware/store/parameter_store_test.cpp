@@ -64,7 +64,7 @@ TEST_CASE("a store starts with the defaults and reads them in the table's order"
   }
 }
 
-TEST_CASE("an accepted transaction takes effect whole, at the period in which the interrupt takes it") {
+TEST_CASE("an accepted transaction is applied as a whole, in the period in which the interrupt applies it") {
   ParameterStore store;
   CHECK(!store.apply_offered(0));
   const control::Settings* before = &store.settings();

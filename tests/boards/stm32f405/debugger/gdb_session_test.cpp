@@ -108,7 +108,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(gdb.run() == "T05thread:1;");  // the handler's breakpoint
   }
 
-  TEST_CASE("a step does not go into interrupts, which come after it") {
+  TEST_CASE("a step does not enter an interrupt handler, and the interrupts run after the step") {
     Debugger gdb("exceptions");
     gdb.ask("c");
     while (gdb.test.chip.counters().exceptions[15].count < 3) CHECK(gdb.run(1e-6).empty());

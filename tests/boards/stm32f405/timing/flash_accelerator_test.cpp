@@ -67,7 +67,7 @@ TEST_CASE("emptying the caches makes the first round wait again") {
   CHECK(flash.read(0x4000, 1) == 5);
 }
 
-TEST_CASE("the data cache keeps eight lines, the one used longest ago goes") {
+TEST_CASE("the data cache contains eight lines and replaces the least recently used line") {
   FlashAccelerator flash(flash_bytes, likely);
   flash.set(5, false, false, true);
   for (std::uint32_t i = 0; i < 8; ++i) CHECK(flash.read(i * line, 0) == 5);

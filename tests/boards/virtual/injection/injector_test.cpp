@@ -110,7 +110,7 @@ TEST_CASE("each injected fault has a unique number, both while it is planned and
   CHECK(rig.injector.active()[2].number == later);
 }
 
-TEST_CASE("a fault comes at its time, to the tick, and goes after its duration") {
+TEST_CASE("a fault starts at its time, exact to the tick, and ends after its duration") {
   Rig rig;
   const Ticks begin = rig.chip.now();
   rig.inject("bridge_fault@0.0012345+0.0003");
@@ -237,7 +237,7 @@ TEST_CASE("encoders, shunts and motors by their numbers") {
   CHECK(turn() > healthy + 3500);
 }
 
-TEST_CASE("more faults than a board holds are refused, until some are healed") {
+TEST_CASE("more faults than the maximum are refused until faults are healed") {
   Rig rig;
   for (std::size_t i = 0; i < Injector::faults_maximum; ++i) rig.inject("supply_sag=9@1000");
   CHECK_THROWS_AS(rig.inject("supply_sag=9@1000"), InvalidInjection);

@@ -58,7 +58,7 @@ TEST_CASE("without friction a falling, turning arm keeps its energy") {
   }
 }
 
-TEST_CASE("friction takes as much energy as its torque times the way") {
+TEST_CASE("friction removes the energy of its torque times its travel") {
   auto description = unbounded(test::omni());
   description.simulation.gravity_m_per_s2 = 0.0;
   description.simulation.viscous_friction_Nms_per_rad = {};
@@ -72,7 +72,7 @@ TEST_CASE("friction takes as much energy as its torque times the way") {
   CHECK(start_J - energy_J(arm) == doctest::Approx(way_Nm_rad).scale(0).epsilon(1e-3));
 }
 
-TEST_CASE("Coulomb friction holds a torque below its cone at rest and lets a larger one go") {
+TEST_CASE("Coulomb friction holds the arm at rest below its limit, and a larger torque moves the arm") {
   auto description = test::omni();
   description.simulation.gravity_m_per_s2 = 0.0;
   ArmMotion arm(description, {0.1, 0.8, 0.3});

@@ -107,7 +107,7 @@ TEST_CASE("the ripple is that of unipolar switching, and its mean stands at the 
   CHECK(none.highest_A - none.lowest_A < 1e-6);
 }
 
-TEST_CASE("the supply gives the power that the motor takes") {
+TEST_CASE("the supply provides the power that the motor draws") {
   auto motor = drive();
   Ticks now = 0;
   const double mean_A = switch_bridge(motor, 0.5, 1000, now).mean_A;

@@ -125,7 +125,7 @@ TEST_CASE("the amplifier clips at its rails") {
   CHECK(driven.read_V(board::omni_driver.motor_current[1]) == doctest::Approx(0.2));
 }
 
-TEST_CASE("the enable pin and the bridges' fault take the current away at once, floating pins brake") {
+TEST_CASE("the enable pin and a bridge fault switch the current off immediately, and floating pins brake the motor") {
   for (const int how : {0, 1, 2}) {
     CAPTURE(how);
     const auto arm = test::omni();

@@ -83,7 +83,7 @@ TEST_SUITE("virtual board: control socket") {
     CHECK(server.requests() == 2);
   }
 
-  TEST_CASE("one client too many is refused with a sentence, until another has gone") {
+  TEST_CASE("one client too many is refused with a sentence until another client disconnects") {
     AnsweringServer server;
     std::list<PlainClient> clients;
     while (clients.size() < ControlServer::clients_maximum) {

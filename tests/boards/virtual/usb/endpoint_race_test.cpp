@@ -16,7 +16,7 @@ constexpr std::uint32_t control_of_poses = 0x920, epena = 1u << 31;
 
 }  // namespace
 
-TEST_CASE("a pose that the host takes while the driver takes it back does not begin again") {
+TEST_CASE("a pose that the host reads while the driver withdraws it is not sent again") {
   for (const int token_at : {1, 2, 3}) {
     CAPTURE(token_at);
     FirmwareOnBus bus(flashed_image());
@@ -48,7 +48,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
   }
 }
 
-TEST_CASE("a pose that the host takes while a newer one of the same frame replaces it does not come twice") {
+TEST_CASE("a pose that the host reads while a newer pose of the same frame replaces it is not sent twice") {
   // If the host requests no report, first the spare report and then the newest report replace the waiting report.
   for (const int replacement : {1, 2}) {
     CAPTURE(replacement);

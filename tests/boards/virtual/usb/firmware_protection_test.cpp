@@ -176,7 +176,7 @@ TEST_CASE("each invalid memory access or jump raises a CPU fault with its progra
   }
 }
 
-TEST_CASE("without a stack the bridges go off at once, although nothing can be stacked any more") {
+TEST_CASE("without a stack the bridges switch off immediately, although no exception frame can be stored") {
   constexpr std::uint32_t memory_bottom = virtual_board::ccm_base, behind_ram = 0x2002'1000;
   constexpr std::uint16_t push = 0xB510, undefined = 0xDEFF;
   enum class Context { main_loop, control_interrupt, sleep };

@@ -11,7 +11,7 @@
 
 namespace inkwell::virtual_usb_test {
 
-TEST_CASE("the longest full selection loses no sample to a slow host that asks for everything else too") {
+TEST_CASE("the longest full selection loses no sample with a slow host that also requests all other reports") {
   constexpr double host_clock_ppm = -500.0;
   FirmwareOnBus bus(flashed_image(), host_clock_ppm);
   bus.connect();

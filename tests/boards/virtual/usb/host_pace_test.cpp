@@ -26,7 +26,7 @@ void answer(HostPace& pace, std::uint8_t endpoint, int times) {
   for (int i = 0; i < times; ++i) pace.completed(in(endpoint), transfer_status::success);
 }
 
-TEST_CASE("a host that keeps requests is waited for when it has none left") {
+TEST_CASE("the board waits for a host that had several pending requests, if no request is left") {
   HostPace pace;
   submit(pace, 1, 3);
   CHECK_FALSE(pace.is_owed());
@@ -42,7 +42,8 @@ TEST_CASE("a host that keeps requests is waited for when it has none left") {
   CHECK_FALSE(pace.is_owed());
 }
 
-TEST_CASE("a host that asked once is not expected to ask again, one that asks one by one is") {
+TEST_CASE(
+    "the board expects no second request after a single request, but expects one after repeated single requests") {
   HostPace pace;
   submit(pace, 1, 1);
   answer(pace, 1, 1);

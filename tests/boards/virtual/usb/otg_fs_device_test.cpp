@@ -110,7 +110,7 @@ TEST_CASE("the pull-up needs power, a session and no soft disconnect") {
   CHECK(core.attachment() != first);
 }
 
-TEST_CASE("a pull-up without VBUS is seen: at once when it rises, after ten seconds when VBUS goes") {
+TEST_CASE("a pull-up without VBUS is reported immediately when it is connected, and ten seconds after a VBUS loss") {
   CoreBench bench;
   bench.core.set_bus_power(false);
   bench.wait_us(9.9e6);
@@ -575,7 +575,7 @@ TEST_CASE("each access that the manual forbids is reported and has its consequen
     bench.write(0x940, bench.read(0x940) | epena | cnak);
     CHECK(bench.log.has("whose EPTYP is control"));
   }
-  SUBCASE("a turnaround that is too short when the first packet comes") {
+  SUBCASE("the turnaround time is too short at the first packet") {
     bench.write(0x00C, (bench.read(0x00C) & ~(0xFu << 10)) | 1u << 10);
     bench.core.begin_reset();
     bench.core.end_reset();

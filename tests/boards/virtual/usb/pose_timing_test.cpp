@@ -25,7 +25,7 @@ TEST_CASE("every frame of a fast and of a slow host brings a new pose, and none 
   }
 }
 
-TEST_CASE("every frame brings a new pose while all parameters are set, again and again") {
+TEST_CASE("every frame has a new pose while all parameters are set repeatedly") {
   for (const double host_clock_ppm : {500.0, -500.0}) {
     CAPTURE(host_clock_ppm);
     const PoseTiming timing = measure_poses(flashed_image(), host_clock_ppm, 3.0, 3, Beside::storm_of_parameters);

@@ -89,7 +89,7 @@ TEST_CASE("a device that is not configured any more answers on endpoint 0 alone"
   CHECK(host.bus.cable.in(own_address, 0, packet).handshake == Handshake::nak);
 }
 
-TEST_CASE("after each of several resets of the bus the device comes back and obeys, and breaks no rule meanwhile") {
+TEST_CASE("after each of several bus resets the device enumerates, executes commands and breaks no rule") {
   Host host;
   for (std::uint8_t token = 1; token < 5; ++token) {
     CAPTURE(token);

@@ -53,7 +53,7 @@ TEST_CASE("nothing is enumerated without the cable, or with a device that does n
   CHECK(bench.port.enumerated());
 }
 
-TEST_CASE("a host that hangs asks for nothing, its frames go on, and it goes on where it was") {
+TEST_CASE("a host that hangs requests no data, its frames continue, and its transfers continue afterwards") {
   RootPortBench bench;
   bench.use();
   bench.port.set_host_polling(false);

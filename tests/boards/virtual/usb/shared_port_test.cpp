@@ -95,7 +95,8 @@ TEST_CASE("each program has separate transfer numbers, and an unlinked request a
   }
 }
 
-TEST_CASE("the stream belongs to the program that asked first, until it takes its requests back or is gone") {
+TEST_CASE(
+    "the stream belongs to the first program that requests it, until this program unlinks its requests or exits") {
   LiveBoard board;
   board.firmware.stream(true);
   REQUIRE(board.wait_until_enumerated());
@@ -125,7 +126,7 @@ TEST_CASE("the stream belongs to the program that asked first, until it takes it
   CHECK(second.receive(reply.actual_length).size() == 64);
 }
 
-TEST_CASE("a program that goes leaves the others as they are; with the last the bus falls silent") {
+TEST_CASE("the exit of a program does not affect other programs, and the exit of the last program silences the bus") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   unsigned resets = 0;

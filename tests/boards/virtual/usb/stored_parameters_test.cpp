@@ -104,7 +104,7 @@ struct StoringBoard {
 
 }  // namespace
 
-TEST_CASE("parameters that were stored hold after the power was off; others do not; a factory reset forgets them") {
+TEST_CASE("only stored parameters remain after a power cycle, and a factory reset erases them") {
   StoringBoard board;
   board.start();
   CHECK(board.report().contents == StoreContents::nothing);
@@ -447,7 +447,7 @@ TEST_CASE("a store that a power cut of the chip ends leaves the old parameters o
   }
 }
 
-TEST_CASE("neither the control interrupt nor the poses are held up by a store, however slow the flash is") {
+TEST_CASE("a store does not delay the control interrupt or the poses, even with the slowest flash") {
   for (const bool slowest : {false, true}) {
     CAPTURE(slowest);
     StoringBoard board({.slowest_flash = slowest});

@@ -122,7 +122,7 @@ TEST_CASE("control transfers and errors over the socket") {
   board.call([&] { CHECK(board.log.sentences.empty()); });
 }
 
-TEST_CASE("one importer too many is refused, an unknown device too, and a next one is welcome") {
+TEST_CASE("one importer too many and an unknown device are refused, and a later importer is accepted") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   {
@@ -186,7 +186,7 @@ TEST_CASE(
   board.call([&] { board.usb.settle(); });  // both requests arrive before the first is answered
   board.pause(false);
   for (int i = 0; i < 2; ++i) REQUIRE(client.receive(client.read_reply().actual_length).size() == 64);
-  SUBCASE("it takes the last one back, too late") {
+  SUBCASE("the client unlinks the last transfer too late") {
     client.unlink(32, 31);
     CHECK(client.receive<usbip::ReturnUnlink>().header.sequence == 32);
   }
@@ -360,7 +360,7 @@ TEST_CASE("nonsense closes the connection, not the server") {
   configure(client);
 }
 
-TEST_CASE("who imports right after a client died with transfers under way is served") {
+TEST_CASE("a client is served immediately after another client exited with pending transfers") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   for (int i = 0; i < 20; ++i) {

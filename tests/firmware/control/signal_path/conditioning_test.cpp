@@ -81,7 +81,7 @@ TEST_CASE("switches count after 5 ms without change") {
   CHECK((filter.closed & 4) == 0);
 }
 
-TEST_CASE("the inkwell gives its reference once the arm has been still in it for 0.1 s") {
+TEST_CASE("the inkwell sets its reference after the arm has been stationary in it for 0.1 s") {
   InkwellReference reference;
   std::array<std::int32_t, 3> counts{100, -20, 7};
   for (int i = 0; i < 5'000; ++i) CHECK_FALSE(reference.update(counts, false));

@@ -86,7 +86,8 @@ TEST_CASE("without a report the force stays for the expiry and is gone 10 ms lat
   CHECK(fastest_N < 0.0101f);
 }
 
-TEST_CASE("a program that ends lets its force fade at once, and one that comes back takes over from there") {
+TEST_CASE(
+    "the force of a program that ends fades immediately, and a program that returns continues from the faded force") {
   ProgramForce program;
   program.set_target(target({2.0f, 0.0f, 0.0f}, 20, ForceMode::instead_of_walls), limits);
   for (int period = 0; period < 40; ++period) program.advance(limits);

@@ -125,7 +125,7 @@ TEST_CASE("friction sticks up to its static bound, then slides with the dynamic 
   CHECK(force_at(0.0012f).z == doctest::Approx(1.0f));
 }
 
-TEST_CASE("a plane lets go where it is left, and holds where it is touched again") {
+TEST_CASE("the friction of a plane ends where the probe leaves it, and starts where the probe touches it again") {
   Shapes shapes;
   put_floor(shapes, 0, 0.0f, rough(1.0f, 1.0f));
   TouchedShapes touched;

@@ -86,7 +86,7 @@ TEST_CASE("each motor's change is looked at") {
   }
 }
 
-TEST_CASE("a motor that comes open takes the force away in the period in which it is read, and not the reference") {
+TEST_CASE("an open motor switches the force off in the period of its first reading, and the arm stays referenced") {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     CAPTURE(motor);
     HeldArm arm;
@@ -189,7 +189,7 @@ TEST_CASE("current changes end neither a brake nor a force that is requested dur
   CHECK(tested.controller.force_is_on());
 }
 
-TEST_CASE("a motor that turns as the force comes on has a current of its back EMF at once") {
+TEST_CASE("a motor that turns when the force switches on immediately has a current from its back EMF") {
   for (std::size_t motor = 0; motor < 3; ++motor)
     for (const bool is_turning : {true, false}) {
       CAPTURE(motor);

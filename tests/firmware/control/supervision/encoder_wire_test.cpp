@@ -91,7 +91,7 @@ TEST_CASE("an encoder dither that moves on by a count restarts the check of the 
   CHECK(periods_until_dead(creeping) == never);  // 40 ms on each pair
 }
 
-TEST_CASE("as long as it goes to and fro a dead wire is found again and again, and no more once it stands") {
+TEST_CASE("a dead wire is detected repeatedly while the count alternates, and no longer once the count is stationary") {
   EncoderWire wire;
   int found = 0;
   std::uint32_t period = 0;

@@ -216,7 +216,7 @@ struct PressedArm {
   }
 };
 
-TEST_CASE("a reading that stands still takes the force away within milliseconds, whichever motor it is") {
+TEST_CASE("a frozen current reading of any motor switches the force off within milliseconds") {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     CAPTURE(motor);
     PressedArm arm;

@@ -47,7 +47,8 @@ auto rising(float from_A, float to_A) {
 }
 std::int32_t stationary(float) { return 4711; }
 
-TEST_CASE("an encoder that stands while the current changes by thrice as much as it may is stuck, either way") {
+TEST_CASE(
+    "an encoder is stuck if it is stationary while the current changes by three times the limit, in either direction") {
   CHECK_FALSE(is_detected(stationary, rising(0.3f, 3.25f)));
   CHECK(is_detected(stationary, rising(0.3f, 3.36f)));
   CHECK_FALSE(is_detected(stationary, rising(0.3f, -2.65f)));
