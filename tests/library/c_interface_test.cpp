@@ -314,7 +314,7 @@ TEST_CASE("a limit is reported in the pose while it reduces the force") {
   push_until(0.0, [](const auto& pose) { return pose.limits == 0; });
 }
 
-TEST_CASE("a plane holds the probe up, and a set that is not sound changes nothing") {
+TEST_CASE("a plane supports the probe, and an invalid set of shapes changes nothing") {
   VirtualArm virtual_arm;
   virtual_arm.make_active();
   inkwell_plane floor{{0, 0, -0.03}, {0, 0, 1}, {1000, 2, 0, 0, 10}};
@@ -364,7 +364,7 @@ TEST_CASE("parameters by name: read, set together, refused whole") {
   CHECK(inkwell_parameter_at(inkwell_parameter_count()) == nullptr);
 }
 
-TEST_CASE("the scope gives every control period, and a recording keeps them") {
+TEST_CASE("the scope returns every control period, and a recording contains all of them") {
   VirtualArm virtual_arm;
   std::vector<float> values(2 * 1000);
   std::vector<std::uint32_t> periods(1000);

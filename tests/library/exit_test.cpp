@@ -8,7 +8,7 @@
 namespace inkwell::tests {
 namespace {
 
-TEST_CASE("an arm is asked and closed by an object that lives as long as the program") {
+TEST_CASE("an object that lives as long as the program can read and close an arm") {
   // Freed memory is overwritten, so that a later read returns wrong values.
   RunningProgram program({build_directory() + "/library-closes-late"}, {"MALLOC_PERTURB_=85"});
   std::array<std::string, 4> in_main;

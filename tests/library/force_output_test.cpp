@@ -35,7 +35,7 @@ TEST_CASE("while the device does not accept a force or a command, only the newes
   CHECK(reports.forces.back().sequence == 1);  // no force counts as lost
 }
 
-TEST_CASE("who reads the poses asks for the driver without waiting for the request of another thread") {
+TEST_CASE("a thread that reads poses can request the driver without waiting for the request of another thread") {
   QueuedReports reports;
   std::binary_semaphore is_asked(0), may_answer(0);
   reports.on_feature_request = [&] {

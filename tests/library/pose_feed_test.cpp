@@ -151,7 +151,7 @@ TEST_CASE("a servo stops with the force or with the poses and reports the reason
     ends();
     CHECK(contains(message_of<library::ForceLost>([&] { servo.throw_what_ended_it(); }), "over_speed"));
   }
-  SUBCASE("a fault that is gone before the servo has seen it") {
+  SUBCASE("a fault clears before the servo reads it") {
     board.is(INKWELL_FAULT, INKWELL_FAULT_OVER_SPEED);
     board.is(INKWELL_ACTIVE);
     ends();

@@ -9,7 +9,7 @@
 namespace inkwell::tests {
 namespace {
 
-TEST_CASE("an arm that does not know where it is gives no force until it was in the inkwell") {
+TEST_CASE("an unreferenced arm outputs no force before it was in the inkwell") {
   Board board({.paused = true});
   VirtualArm virtual_arm(board.address);
   virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_UNREFERENCED; });
@@ -48,7 +48,7 @@ TEST_CASE("an arm with another protocol version is not opened, and the error con
   CHECK(arm == nullptr);
 }
 
-TEST_CASE("more forces than the USB takes: the newest goes out, and none is refused or lost") {
+TEST_CASE("if more forces are sent than USB can transfer, the newest force is sent, and no force is refused or lost") {
   VirtualArm virtual_arm;
   virtual_arm.make_active();
   inkwell_information before, after;

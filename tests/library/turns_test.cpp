@@ -108,7 +108,7 @@ TEST_CASE("the next pose is requested only after the servo has answered, and the
   CHECK(poses.wait(reaches(now + 10)).sequence >= now + 10);
 }
 
-TEST_CASE("a servo that waits for something else in the library does not hold up the pose that it waits for") {
+TEST_CASE("a servo that waits in the library does not delay the pose that it waits for") {
   PoseFeed poses;
   const SteppedBoard board(poses, std::make_shared<Turns>(), true);
   std::thread servo([&] {

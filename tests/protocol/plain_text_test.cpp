@@ -31,6 +31,6 @@ TEST_CASE("control characters and broken UTF-8 are replaced byte by byte") {
   CHECK(plain_text(std::string_view("\0\xC3", 2)) == "??");
 }
 
-TEST_CASE("lines keep their ends and tabs, and nothing else") {
+TEST_CASE("plain_lines retains only line ends and tabs among the control characters") {
   CHECK(plain_lines("one\n\ttwo\r\n\x1B]0;title\x07\n") == "one\n\ttwo \n?]0;title?\n");
 }

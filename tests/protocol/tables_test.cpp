@@ -171,7 +171,7 @@ TEST_CASE("each result of a store command has a meaning and a remedy") {
   CHECK(info(static_cast<StoreContents>(200)).name == "unknown");
 }
 
-TEST_CASE("the store is left alone in every state from which a force may come by itself") {
+TEST_CASE("may_store returns true only in the states unreferenced, ready and fault") {
   for (std::size_t i = 0; i < state_count; ++i) {
     const auto state = static_cast<State>(i);
     CAPTURE(info(state).name);

@@ -157,8 +157,7 @@ TEST_CASE("before the arm is referenced a wire of the bridges is checked as well
   check_clears_when_gone(rig, State::unreferenced);
 }
 
-TEST_CASE(
-    "a heartbeat's wire that touches 3.3 V lets go of the bridges at once, and is noticed with the force on and off") {
+TEST_CASE("a heartbeat wire at 3.3 V switches the bridges off immediately, and is detected with the force on and off") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({.fault = "wire_high", .of = "bridge_heartbeat"});
@@ -190,7 +189,7 @@ TEST_CASE("a fault of the heartbeat, enable or hold wire switches the force off 
   }
 }
 
-TEST_CASE("an enable wire that touches 3.3 V under a force leaves the arm to coast all the same once that goes off") {
+TEST_CASE("with an enable wire at 3.3 V, the arm still coasts after the force switches off") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({.fault = "wire_high", .of = "bridge_enable"});

@@ -69,7 +69,7 @@ TEST_CASE("without a fault the hand feels the wall and nothing happens") {
   CHECK(result.position_error_m.value() < 0.0005);
 }
 
-TEST_CASE("the force that rises, falls or is held back is less than, or as much as, the force limit") {
+TEST_CASE("a rising, falling or limited force exceeds the force limit by at most 5 %") {
   for (const auto& [name, least, most] :
        {std::tuple{"none ramping 1", 0.1, 0.7}, {"none limited 1", 0.9, 1.05}, {"none landing 1", 0.1, 0.76}}) {
     const Result result = result_of(name);
@@ -111,7 +111,7 @@ TEST_CASE("a force that is falling is switched on again before it counts as rega
   CHECK_FALSE(board.is(protocol::State::landing));
 }
 
-TEST_CASE("a fault whose cause takes a while to go is cleared again, as a user does") {
+TEST_CASE("a fault with a slowly disappearing cause is cleared repeatedly, as by a user") {
   campaign::BoardRun board({.real_time = false, .paused = true});
   REQUIRE(board.connect(1.0));
   board.set({{protocol::Parameter::host_timeout_s, 2.0f}});
@@ -156,12 +156,12 @@ TEST_CASE("the interrupts that are lost and late in the campaign are those that 
   CHECK(tried == handled);
 }
 
-TEST_CASE("electrical faults that the firmware knows take the bridges off within two control periods") {
+TEST_CASE("electrical faults that the firmware detects switch the bridges off within two control periods") {
   check_sample(
       [](const campaign::Expected& expected) { return expected.longest_off_periods <= campaign::quick_periods; });
 }
 
-TEST_CASE("the wire of the supply's divider that breaks is a supply far too low, as soon as its capacitor is empty") {
+TEST_CASE("a broken wire of the supply divider is a low supply after its capacitor is discharged") {
   const Result result = result_of("wire_open:supply wall 2");
   REQUIRE(result.off_after_s);
   CHECK(*result.off_after_s < 30 * control_period_s);

@@ -84,7 +84,7 @@ TEST_CASE("a control interrupt that does not finish within its period is a fault
   CHECK(restarts(rig.control) == 0);
 }
 
-TEST_CASE("a processor that stands still for a moment while no interrupt runs is no fault") {
+TEST_CASE("a short processor stall outside an interrupt is not a fault") {
   BoardRig rig;
   press_into_wall(rig);
   run_into_control_interrupt(rig);
@@ -94,9 +94,7 @@ TEST_CASE("a processor that stands still for a moment while no interrupt runs is
   CHECK(protocol::force_is_on(rig.pose().state));
 }
 
-TEST_CASE(
-    "a debug probe that halts the core takes the voltage off the motors and lets go of the bridges, and the watchdog "
-    "waits for it") {
+TEST_CASE("a debug halt of the core switches the motor voltage and the bridges off, and pauses the watchdog") {
   BoardRig rig;
   press_into_wall(rig);
   REQUIRE(any_motor_driven(rig.control));
@@ -244,7 +242,7 @@ TEST_CASE("a spike on one encoder wire during a pulse on the other is no whole s
   for (int joint = 0; joint < 3; ++joint) CHECK(rig.pose().joint_rad[joint] == before.joint_rad[joint]);
 }
 
-TEST_CASE("a host that gives signs of life keeps the force, and loses it without them") {
+TEST_CASE("a host with signs of life retains the force, and a host without them loses it") {
   BoardRig rig;
   press_into_wall(rig);
   rig.set({{Parameter::host_timeout_s, 0.05f}});

@@ -49,7 +49,7 @@ struct BoardAndCompanion {
 
 }  // namespace
 
-TEST_CASE("a fault is shown with its remedy, and cleared once its cause is gone") {
+TEST_CASE("a fault is shown with its remedy, and can be cleared after its cause has disappeared") {
   BoardAndCompanion rig;
   rig.wait_for_device();
   const auto well = rig.run({"fault"});

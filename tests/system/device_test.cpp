@@ -114,7 +114,7 @@ TEST_CASE(
   CHECK(refused.err.find("24 hexadecimal digits") != std::string::npos);
 }
 
-TEST_CASE("the device holds the table's defaults, takes a transaction whole, and gives the defaults back") {
+TEST_CASE("the device has the defaults of the table, applies a transaction as a whole, and restores the defaults") {
   BoardRig rig;
   const auto before = rig.device->parameters();
   auto expected = protocol::default_parameters();

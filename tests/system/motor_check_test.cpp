@@ -215,7 +215,7 @@ void drive_to_and_fro(CheckedRig& rig, const std::string& how) {
 
 }  // namespace
 
-TEST_CASE("sound motors keep far from a fault") {
+TEST_CASE("healthy motors stay far from a fault") {
   CheckedRig rig;
   shake(rig, "");
   knock_on_a_stiff_wall(rig, "");
@@ -231,8 +231,7 @@ TEST_CASE("sound motors keep far from a fault") {
   check(rig, "let go of");
 }
 
-TEST_CASE(
-    "motors that are 100 K hotter as they are tested keep far from a fault, and so they do when they have cooled") {
+TEST_CASE("motors that are 100 K hotter during their test stay far from a fault, both hot and cooled") {
   CheckedRig rig(100.0);
   for (const std::string how : {"hot, ", "cooled, "}) {
     knock_on_a_stiff_wall(rig, how);

@@ -65,7 +65,8 @@ double largest_step_N(const std::vector<device::Pose>& poses) {
   return largest_N;
 }
 
-TEST_CASE("a program's force is felt, shown as its own, and gone within its expiry and 10 ms when it is killed") {
+TEST_CASE(
+    "the force of a program is felt and reported, and ends within its expiry plus 10 ms when the program is killed") {
   ProgramRig rig;
   const auto before = rig.control.truth().at("true_position_x_m").get<double>();
   const auto poses = rig.drive({.force_N = {1.0f, 0.0f, 0.0f}}, 200);
@@ -180,7 +181,7 @@ TEST_CASE("without a hand, a program force cannot make the arm faster than the s
   CHECK(free_m_per_s > 2.4);
 }
 
-TEST_CASE("in an orderly end the force leaves a pressing hand softly, a stop takes it at once") {
+TEST_CASE("disable_force reduces the force of a pressing hand slowly, and a stop removes it immediately") {
   ProgramRig rig;
   rig.set({{Parameter::box_minimum_z_m, -0.015f}});
   rig.run(0.1);

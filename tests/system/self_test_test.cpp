@@ -225,7 +225,7 @@ TEST_CASE("motors that are 100 K hotter pass, and so do supplies of 13 V and 23 
   }
 }
 
-TEST_CASE("stored current limits of nearly nothing keep no sound board from passing as it starts, at rest or moving") {
+TEST_CASE("healthy boards with very small stored current limits pass the self-test at start-up, at rest or in motion") {
   BoardRig rig;
   rig.take_to({0.02, 0.02, -0.02});
   rig.set({{protocol::Parameter::current_limit_1_A, 0.01f},

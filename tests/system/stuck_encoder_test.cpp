@@ -114,7 +114,7 @@ TEST_CASE("fast motion without a force: a motor whose voltage tells that it turn
   }
 }
 
-TEST_CASE("in the inkwell the arm stands although a force pulls at it, and no encoder is taken for stuck") {
+TEST_CASE("in the inkwell the arm is stationary although a force pulls it, and no encoder is reported as stuck") {
   BoardRig rig;
   rig.make_active();
   rig.set({{Parameter::force_limit_N, 8.0f}});

@@ -52,7 +52,7 @@ TEST_CASE("closing the window switches the force off, and the board reports no f
   CHECK(pose->fault == protocol::Fault::none);
 }
 
-TEST_CASE("while another program drives, the window names it, and takes the arm over when asked") {
+TEST_CASE("while another program drives, the window names it and can take over the arm") {
   WindowRig rig;
   RunningProgram other({build_directory() + "/inkwell", "force", "on", "--usbip", rig.board.usbip().text()});
   REQUIRE(other.read_line() == "The force is on.");
@@ -105,7 +105,7 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   CHECK_FALSE(rig.look().says("These parameters are from the recording."));
 }
 
-TEST_CASE("a recording whose device is unplugged holds everything up to then") {
+TEST_CASE("a recording whose device is unplugged contains everything before the unplug") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("cut.h5");
   WindowRig rig;

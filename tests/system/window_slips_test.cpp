@@ -146,7 +146,7 @@ TEST_CASE("Ctrl+Z goes by the character, wherever the keyboard has it") {
   CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
 }
 
-TEST_CASE("a key that is held takes back one change, not one after the other") {
+TEST_CASE("a held key undoes only one change") {
   WindowRig rig;
   for (const char* value : {"1500", "1600"})
     change_and_wait(rig, [&] {
@@ -242,7 +242,7 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   rig.wait_until("the force is off", force_is_off);
 }
 
-TEST_CASE("a banner that comes while the mouse drags moves nothing before the mouse lets go") {
+TEST_CASE("a banner that appears during a drag moves nothing before the mouse button is released") {
   WindowRig rig;
   const auto view = rig.look().item("scene/view");
   rig.drag(view.at(0.85, 0.3), view.at(0.8, 0.4));

@@ -103,7 +103,7 @@ TEST_CASE("a factory reset asks for confirmation, erases the stored parameters a
   CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
 }
 
-TEST_CASE("a question about a device that goes away goes with it") {
+TEST_CASE("a question about a device closes when the device is disconnected") {
   WindowRig rig;
   make_stiff(rig);
   store(rig);

@@ -232,7 +232,7 @@ TEST_CASE("the box must have room for the sphere") {
                 id_of(Parameter::box_maximum_y_m), 1.9f * radius_m);
 }
 
-TEST_CASE("while the force is on the arm can not change, everything else can") {
+TEST_CASE("while the force is on, only the parameters of the arm cannot change") {
   ParameterStore store;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
     const protocol::ParameterInfo& row = protocol::parameter_table[i];

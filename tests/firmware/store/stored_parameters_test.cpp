@@ -256,7 +256,7 @@ TEST_CASE("stored parameters: zero and minus zero are two values") {
   CHECK(board.report().differing == 1);
 }
 
-TEST_CASE("stored parameters: a factory reset forgets them, at once and for the next start") {
+TEST_CASE("stored parameters: a factory reset restores the defaults immediately and for the next start") {
   PlainFlash flash;
   store_in(flash, force_limit, 1.25f);
   Board board(flash);
@@ -283,7 +283,8 @@ TEST_CASE("stored parameters: a factory reset forgets them, at once and for the 
 }
 
 TEST_CASE(
-    "stored parameters: a reset where nothing is stored gives the defaults, once the transaction before is taken") {
+    "stored parameters: a factory reset without stored parameters restores the defaults after the previous "
+    "transaction") {
   PlainFlash flash;
   Board board(flash);
   REQUIRE(board.parameters.accept(test::Transaction{test::entry(force_limit, 2.0f)}.bytes(), false) ==
@@ -331,7 +332,7 @@ TEST_CASE("stored parameters: parameters of another firmware are counted as unkn
   CHECK(entries_of(flash).size() == link::image_parameter_count());
 }
 
-TEST_CASE("stored parameters: of many that it does not know as many are kept as there is room for") {
+TEST_CASE("stored parameters: unknown parameters are retained up to the available size") {
   PlainFlash flash;
   Entries many;
   for (std::uint32_t i = 0; i < 200; ++i) many.emplace_back(2 + i % 90, 1.0f);
@@ -345,7 +346,7 @@ TEST_CASE("stored parameters: of many that it does not know as many are kept as 
   CHECK(Board(flash).held(force_limit) == 1.5f);
 }
 
-TEST_CASE("stored parameters: those of another force law are neither taken nor kept") {
+TEST_CASE("stored parameters: the parameters of another force law are neither used nor retained") {
   PlainFlash flash;
   RecordHead head = valid_head();
   head.force_law_hash ^= 1;

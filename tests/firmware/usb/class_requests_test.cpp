@@ -41,7 +41,7 @@ TEST_CASE("HID: idle rate is kept, boot protocol is refused") {
   CHECK(bench.control(request(0x21, 10, 0, 1, 0)) == stall_result);  // the scope interface is not HID
 }
 
-TEST_CASE("HID: the controller's report can be asked for, and takes none") {
+TEST_CASE("HID: the host can request the controller report, but cannot send one") {
   DeviceBench bench;
   bench.configure();
   const auto ask = [&](std::uint16_t value) { return bench.control(request(0xA1, 1, value, 2, 64)); };
@@ -300,7 +300,7 @@ TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REP
   CHECK(information.force_reports_refused == 1);
 }
 
-TEST_CASE("HID: shapes come whole or are refused whole, their result has their ticket, and they go with the host") {
+TEST_CASE("HID: shapes are accepted or refused as a whole, their result has their ticket, and they end with the host") {
   DeviceBench bench;
   bench.configure();
   bench.link.program.take_shapes();  // removes the empty request of the bus reset

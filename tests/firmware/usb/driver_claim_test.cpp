@@ -241,7 +241,7 @@ TEST_CASE("claim: poses show that the driver has changed, and nothing else that 
   CHECK(parity() == 0);
 }
 
-TEST_CASE("request results: waiting until the interrupt has taken the command, and forgotten with the host") {
+TEST_CASE("a request result is waiting until the interrupt has executed the command, and is discarded with the host") {
   DrivenBench bench;
   REQUIRE(bench.port.out(1, bytes_of(command(Command::disable_force, 1, first, 5))) == Handshake::ack);
   bench.device.poll();

@@ -99,7 +99,7 @@ TEST_CASE("a held command survives that its endpoint starts again") {
   let_go.check_nothing_was_lost();
 }
 
-TEST_CASE("a held command is forgotten when the host goes") {
+TEST_CASE("a held command is discarded when the host disconnects") {
   FullQueue asleep;
   asleep.port.suspend();
   asleep.device.poll();

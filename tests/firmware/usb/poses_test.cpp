@@ -15,7 +15,7 @@ using test::read_controller;
 using test::read_pose;
 using test::request;
 
-TEST_CASE("a pose comes in every frame, taken near its end, in order, none lost") {
+TEST_CASE("every frame has a pose from near its end, in order and without losses") {
   DeviceBench bench;
   bench.configure();
   std::optional<std::uint32_t> last;
@@ -100,7 +100,7 @@ TEST_CASE("a device that is configured again while a spare report waits sends no
   CHECK(read_pose(bench)->sequence == first + 2);
 }
 
-TEST_CASE("a host that always asks just before a frame's end has the controller's reports and the load all the same") {
+TEST_CASE("a host that always reads just before the end of a frame still gets the controller reports and the load") {
   DeviceBench bench;
   bench.configure();
   pass_frame(bench);
@@ -166,7 +166,7 @@ TEST_CASE("the controller's report is as new as the pose whenever the host's tur
   }
 }
 
-TEST_CASE("a host that asks the controller early gets a report as well, and one that never asks loses no pose") {
+TEST_CASE("a host that reads the controller report early gets a report, and a host that never reads it loses no pose") {
   DeviceBench bench;
   bench.configure();
   for (int i = 0; i < 10; ++i) {

@@ -91,7 +91,7 @@ device::Device device_with(Kept& kept) { return device::Device(std::make_unique<
 
 }  // namespace
 
-TEST_CASE("every row of a black box comes once, in the order of time") {
+TEST_CASE("every row of a black box is read once, in order of time") {
   Kept kept = full();
   auto device = device_with(kept);
   const auto head = device.black_box();

@@ -95,7 +95,7 @@ TEST_CASE("an older command's result is not taken for this one's") {
   CHECK(asked > 10);
 }
 
-TEST_CASE("a board that takes no command to store, or never ends it, is given up after a second of its time") {
+TEST_CASE("a board that does not execute or finish a store command causes an error after one second of board time") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   constexpr std::uint32_t step = protocol::servo_rate_Hz / 10;

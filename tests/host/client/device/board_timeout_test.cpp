@@ -9,7 +9,7 @@
 using namespace inkwell;
 using namespace std::chrono_literals;
 
-TEST_CASE("a limit counts board time, however long the computer takes for it") {
+TEST_CASE("a time-out counts board time, even if the computer is slow") {
   device::BoardTimeout limit(1.0, 2s);
   const std::chrono::steady_clock::time_point begin{};
   CHECK_FALSE(limit.update_time(5'000, begin));
@@ -22,7 +22,7 @@ TEST_CASE("wall time counts while board time does not pass") {
   device::BoardTimeout limit(1.0, 2s);
   const std::chrono::steady_clock::time_point begin{};
   std::optional<std::int64_t> now_periods;
-  SUBCASE("because no pose came yet") {}
+  SUBCASE("no pose has arrived") {}
   SUBCASE("because the board is paused") { now_periods = 100; }
   CHECK_FALSE(limit.update_time(now_periods, begin));
   CHECK_FALSE(limit.update_time(now_periods, begin + 2s));

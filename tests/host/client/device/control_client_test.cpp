@@ -127,7 +127,7 @@ TEST_CASE("a trace is read row by row, however long; a damaged one is refused") 
     CHECK(contains(failure_at(damaged), "damaged trace"));
 }
 
-TEST_CASE("an answer that comes together with the one before is kept for its own call") {
+TEST_CASE("an answer that arrives together with the previous answer is used for its own call") {
   bool is_first = true;
   FakeControlServer server([&](const json&) {
     return std::exchange(is_first, false)

@@ -111,7 +111,7 @@ TEST_CASE("without an arm description, the arm has no name") {
   CHECK(device::open_arm(device::parse_address("virtual"), board.options()).arm_name.empty());
 }
 
-TEST_CASE("a board whose time stands still stands by, and is run until it shows itself") {
+TEST_CASE("open_arm puts a paused board on stand-by and runs it until its arm appears") {
   FakeUsbipServer usb;
   usb.product_id = 0x0BAD;
   FakeControlServer control([&](const json& request) {
@@ -138,7 +138,7 @@ TEST_CASE("a board that shows no arm in two seconds of its time is given up") {
   CHECK(statuses == 4);
 }
 
-TEST_CASE("a board whose processor is locked up, so that no time passes, is given up at once") {
+TEST_CASE("a board with a locked-up processor immediately causes an error") {
   FakeUsbipServer usb;
   usb.product_id = 0x0BAD;
   FakeControlServer control([&](const json&) {

@@ -31,7 +31,7 @@ device::Shapes valid_shapes() {
 
 }  // namespace
 
-TEST_CASE("a force goes over the wire as it was asked, and the firmware takes it") {
+TEST_CASE("a force is sent unchanged, and the firmware accepts it") {
   auto report = device::force_report(
       {.force_N = {1.0f, -2.0f, 3.0f}, .mode = protocol::ForceMode::instead_of_walls, .interval_ms = 50});
   const auto target = link::decode_force(std::as_bytes(std::span(&report, 1)));

@@ -152,7 +152,7 @@ TEST_CASE(
   CHECK(std::ranges::count_if(events, [](const auto& event) { return event.text == "The force is on."; }) == 1);
 }
 
-TEST_CASE("changes asked for in a burst go out together, the last value of each parameter") {
+TEST_CASE("a burst of parameter changes is sent together, with the last value of each parameter") {
   FakeUsbipServer server;
   std::atomic<int> entries = 0;
   server.judge = [&](const protocol::ParametersReport& report) {
@@ -448,7 +448,7 @@ TEST_CASE("the status of a session contains the control period of the last appli
   }
 }
 
-TEST_CASE("scope frames reach the one who asked for them, counted with those that were lost or malformed") {
+TEST_CASE("scope frames reach the callback of the session, and lost or malformed frames are counted") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   std::atomic<std::int64_t> newest_period = 0;

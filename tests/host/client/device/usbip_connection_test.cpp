@@ -17,7 +17,7 @@ using namespace inkwell;
 using namespace inkwell::tests;
 using namespace std::chrono_literals;
 
-TEST_CASE("a request that is not answered in time is taken back, and the connection goes on") {
+TEST_CASE("a request without an answer in time is unlinked, and the connection continues") {
   FakeUsbipServer server;
   device::UsbipConnection connection({"127.0.0.1", server.port()}, "1-1", 50ms);
   connection.start([](const std::string&) {});

@@ -87,7 +87,7 @@ TEST_CASE("an arm on USB/IP reports its identity and streams its pose") {
   }
 }
 
-TEST_CASE("enough transfers are under way that a late reader loses nothing; the scope's, once it is selected") {
+TEST_CASE("enough pose transfers are pending for a slow reader, and scope transfers are pending after a selection") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   CHECK(eventually([&] { return server.waiting_transfers(1) >= 16; }));
@@ -235,7 +235,7 @@ TEST_CASE("a lost device raises Disconnected for any transfer that fails") {
   CHECK_THROWS_AS(arm->read_scope(60s), device::Disconnected);
 }
 
-TEST_CASE("a request that is under way when the connection breaks is not taken for carried out") {
+TEST_CASE("a pending request of a broken connection raises Disconnected") {
   FakeUsbipServer server;
   server.transactions_to_break_at = 1;
   const auto arm = device::Device::open(server.endpoint());
@@ -493,7 +493,7 @@ TEST_CASE("if the reader stops reading the scope, the transport unlinks a transf
   CHECK(server.transfers_taken_back() == 1);
 }
 
-TEST_CASE("who selects no signals any more has given the scope back, and may have it again") {
+TEST_CASE("an empty signal selection releases the scope, and a new selection claims it again") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   constexpr std::size_t under_way = 21;
@@ -510,7 +510,7 @@ TEST_CASE("who selects no signals any more has given the scope back, and may hav
   CHECK(eventually([&] { return server.waiting_transfers(2) == under_way; }));
 }
 
-TEST_CASE("the scope is given back by a transfer that is taken back, also where all had ended") {
+TEST_CASE("an unlinked transfer releases the scope, even if all transfers have ended") {
   FakeUsbipServer server;
   const auto transport = device::open_transport(server.endpoint());
   transport->release_scope();  // has no effect, because the scope is not claimed

@@ -49,7 +49,7 @@ std::string failure_of(const device::VirtualBoardOptions& options) {
 
 }  // namespace
 
-TEST_CASE("a virtual board is asked to end, so that it can put its things in order") {
+TEST_CASE("a virtual board receives SIGTERM, so that it can exit normally") {
   const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_reported);
   {
     device::VirtualBoard board(script.options());

@@ -108,7 +108,7 @@ Image good_image() {
 
 }  // namespace
 
-TEST_CASE("vectors go first and come last, and the brown-out level is set once all is there") {
+TEST_CASE("the vectors are erased first and written last, and the brown-out level is set at the end") {
   FakeLoader fake;
   BootLoader loader(fake);
   const auto image = good_image();

@@ -107,7 +107,7 @@ TEST_CASE("a file has one owner under any of its names, before and after a repla
   CHECK(std::distance(fs::directory_iterator(directory.path()), fs::directory_iterator()) == 3);
 }
 
-TEST_CASE("a file that does not exist yet has one owner too, and is not created before it has a content") {
+TEST_CASE("a file that does not exist has one owner, and is created with its first content") {
   const TemporaryDirectory directory;
   const fs::path file = directory / "file";
   {
@@ -189,7 +189,7 @@ TEST_CASE("the refusal names the owner without commands for the terminal, and a 
   CHECK(owned.content(12).size() == 12);
 }
 
-TEST_CASE("a program that was started meanwhile does not keep the file") {
+TEST_CASE("a program that was started later does not retain ownership of the file") {
   const TemporaryDirectory directory;
   const fs::path file = directory / "file";
   std::ofstream(file) << "old";

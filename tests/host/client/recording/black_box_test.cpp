@@ -77,7 +77,7 @@ TEST_CASE("both file formats preserve a black box with its mark, its step and no
   }
 }
 
-TEST_CASE("rows that are missing in a black box count as lost, those that stand nearer do not") {
+TEST_CASE("missing rows of a black box count as lost, and rows with a smaller distance do not") {
   auto kept = rows();
   kept.erase(kept.begin() + 1);
   CHECK(of_black_box(head(), kept, about()).lost() == 1);

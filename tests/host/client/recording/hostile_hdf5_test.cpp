@@ -334,7 +334,7 @@ TEST_CASE("values must lie in the file, in a form that needs no other library") 
   });
 }
 
-TEST_CASE("a group must be one, with each name once and not too many of them") {
+TEST_CASE("an HDF5 group must be a group, with unique names and a limited number of entries") {
   check_each({
       {"no signals", [](hid_t f) { H5Ldelete(f, "/signals", H5P_DEFAULT); }, "it has no /signals"},
       {"a number as a group", [](hid_t f) { put_dataset(f, "/parameters", H5T_NATIVE_FLOAT, H5Screate(H5S_SCALAR)); },

@@ -37,7 +37,7 @@ std::size_t count_of(const Replay::Passed& passed) {
 
 }  // namespace
 
-TEST_CASE("a replay gives every sample once, in order, and stops at the end") {
+TEST_CASE("a replay returns every sample once, in order, and stops at the end") {
   Replay replay(recorded({Signal::force_N, Signal::duty_1}, {{1000, 20'001}}));
   CHECK(replay.duration_s() == doctest::Approx(1.0));
   CHECK(count_of(replay.advance(0.5, 1)) == 1);  // stays at its first sample

@@ -42,7 +42,7 @@ TEST_CASE("no part of the window overlaps another one or leaves the window") {
         }
 }
 
-TEST_CASE("a banner for which there is no room yet lies over the scene, which stays where it is") {
+TEST_CASE("a banner without space covers the scene, and the scene does not move") {
   const WindowSettings settings;
   const auto before = layout_of({1280, 800}, {46, 0, 0, 0}, settings, 1.0f);
   const auto with_banner = layout_of({1280, 800}, {46, 60, 0, 0}, settings, 1.0f);

@@ -51,7 +51,7 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("force that is asked for, given up, and asked for again is no finding") {
+TEST_CASE("a force that is requested, withdrawn and requested again causes no finding") {
   Watched board;
   board.switch_on();
   board.oracle.withdraw_force(0.0);
@@ -115,7 +115,7 @@ TEST_CASE("a host that goes silently leaves the force on for its timeout and no 
   board.check_only(Complaint::unasked_force);
 }
 
-TEST_CASE("a fault takes the permission away: force that comes back with it cleared is not asked for") {
+TEST_CASE("a fault withdraws the request for a force, so that a force after clearing is a finding") {
   Watched board(Kind::silence);
   board.switch_on();
   board.steps(10, State::fault, Fault::host_silent);
@@ -174,7 +174,7 @@ TEST_CASE("the oracle reports a missed fault if the board reports no fault or an
   CHECK(cable.oracle.findings().at(0).text == "usb_gone or host_silent was not reported");
 }
 
-TEST_CASE("force that goes off by itself is a finding, in a phase without anything put in") {
+TEST_CASE("a force that switches off without a cause is a finding, except in a phase with an injected fault") {
   Watched board;
   board.switch_on();
   board.oracle.disturb(Disturbance::hardware);

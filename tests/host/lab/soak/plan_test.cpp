@@ -44,7 +44,7 @@ TEST_CASE("every shuffled deck has each kind as often as the table states, in a 
   CHECK(deck != next);
 }
 
-TEST_CASE("the same seed and sitting give the same numbers, others give others") {
+TEST_CASE("the same seed and sitting produce the same numbers, and other seeds or sittings produce different numbers") {
   const auto first = [](std::uint64_t seed, std::uint64_t sitting) { return Random(seed, sitting).from(0, 1); };
   CHECK(first(1, 2) == first(1, 2));
   std::set<double> numbers;
@@ -59,7 +59,7 @@ TEST_CASE("the same seed and sitting give the same numbers, others give others")
   }
 }
 
-TEST_CASE("legal transactions are accepted by the firmware, one after the other, all parameters at once too") {
+TEST_CASE("the firmware accepts legal transactions in sequence, and also all parameters together") {
   for (const Reach reach : {Reach::careful, Reach::whole}) {
     Random random(5, 1);
     ParameterSet now = protocol::default_parameters();
@@ -73,7 +73,7 @@ TEST_CASE("legal transactions are accepted by the firmware, one after the other,
   }
 }
 
-TEST_CASE("careful values stay where a sound arm stays sound") {
+TEST_CASE("careful values stay within the range that is safe for a healthy arm") {
   Random random(6, 1);
   const ParameterSet defaults = protocol::default_parameters();
   for (int i = 0; i < 2000; ++i)

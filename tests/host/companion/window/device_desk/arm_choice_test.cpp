@@ -49,7 +49,7 @@ TEST_CASE("an arm that was chosen alone is chosen again next to another arm, and
   CHECK(picked(choice, {b, a}) == "A");
 }
 
-TEST_CASE("arms of a server, which have no numbers before they are opened, are taken as they come") {
+TEST_CASE("arms of a server without serial numbers are chosen in their order") {
   ArmChoice choice("");
   auto one = arm(""), other = arm("");
   other.path = "second";

@@ -9,7 +9,7 @@
 using namespace inkwell;
 using namespace inkwell::tests;
 
-TEST_CASE("with several arms the desk asks, and goes to the one that is chosen") {
+TEST_CASE("with several arms, the desk asks the user and connects to the chosen arm") {
   FakeUsb usb;
   usb.add_arm("A");
   usb.add_arm("B");

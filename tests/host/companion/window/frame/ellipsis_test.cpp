@@ -26,7 +26,7 @@ TEST_CASE("a label that does not fit ends in an ellipsis, between two characters
   CHECK(with_ellipsis("", 1, characters).empty());
 }
 
-TEST_CASE("a window is as many points big as it was asked for, but no bigger than its display") {
+TEST_CASE("a window has the requested size in points, but is not larger than its display") {
   CHECK(window_size({1280, 800}, 1.0f, ScreenSize{1920, 1080}) == ScreenSize{1280, 800});
   CHECK(window_size({1280, 800}, 2.0f, ScreenSize{3840, 2160}) == ScreenSize{2560, 1600});
   CHECK(window_size({1280, 800}, 2.0f, ScreenSize{1920, 1080}) == ScreenSize{1920, 1080});

@@ -41,7 +41,7 @@ TEST_CASE("input wakes the window at once, and it stays awake for a moment") {
   CHECK_FALSE(rhythm.is_lively(10.01 + 1.1 * FrameRhythm::lively_for_s));
 }
 
-TEST_CASE("at rest, drawing takes no more than its share of the time, and motion is drawn all the same") {
+TEST_CASE("at rest, drawing uses only its share of the time, and motion is drawn in every frame") {
   CHECK(frames_drawn({.differs = true}, 0.005) >= 50);
   const double drawing_s = 0.025;
   const int drawn = frames_drawn({.differs = true}, drawing_s);

@@ -44,7 +44,7 @@ TEST_CASE("a straight line keeps its ends, a bend its corner") {
   for (const Point& point : points) CHECK(distance(line, point) < 0.25f);
 }
 
-TEST_CASE("no point is farther from the kept line than can be seen, whichever way the line goes") {
+TEST_CASE("no point is visibly far from the thinned line, in any direction") {
   Line wave, circle;
   for (int i = 0; i < 2000; ++i) {
     const float t = static_cast<float>(i) * 0.01f;

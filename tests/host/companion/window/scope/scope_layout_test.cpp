@@ -45,7 +45,7 @@ TEST_CASE("custom layouts can be saved, replaced, renamed and removed, and built
   CHECK(OwnLayouts({layout}).all().empty());
 }
 
-TEST_CASE("a layout with too many signals asks for as many as can be streamed, each once") {
+TEST_CASE("a layout with too many signals requests the maximum number of signals, each once") {
   ScopeLayout layout{"all", 2, {{PlotKind::time, "a", {}}, {PlotKind::time, "b", {}}}};
   for (const auto& info : protocol::signal_table)
     for (ScopePlot& plot : layout.plots) plot.signals.push_back(static_cast<protocol::Signal>(info.id));

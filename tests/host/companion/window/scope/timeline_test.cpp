@@ -59,7 +59,7 @@ TEST_CASE("a pause retains the picture and discards new samples, and the history
   CHECK(timeline.stretch().last == 500);
 }
 
-TEST_CASE("a drag pauses and goes into the past, as far as something is kept") {
+TEST_CASE("a drag pauses the timeline and moves it into the past, as far as samples exist") {
   Timeline timeline = with_samples(10'000);
   timeline.drag(0.5);
   CHECK(timeline.is_paused());
