@@ -125,7 +125,7 @@ TEST_CASE("a bridge that reports a fault stops all of them at the next control p
   check_reports(reported_by_info(rig), protocol::Fault::bridge_fault);
 }
 
-TEST_CASE("an arm that is too fast is braked by the voltage of its motors until it is slow, and is then released") {
+TEST_CASE("an arm that is too fast is braked by the back EMF of its motors until it is slow, and is then released") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
