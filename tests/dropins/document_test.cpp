@@ -46,7 +46,7 @@ TEST_CASE("the document names every function") {
   }
 }
 
-TEST_CASE("no value stands twice in the table") {
+TEST_CASE("no value occurs twice in the table") {
   for (const auto& row : parameter_table()) {
     CHECK(find_parameter(row.value)->row == &row);
     if (row.last != 0) CHECK(find_parameter(row.last)->row == &row);

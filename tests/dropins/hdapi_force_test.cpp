@@ -110,7 +110,7 @@ TEST_CASE("a stylus that exceeds the velocity limit raises one error and not one
   CHECK(reported_errors < 20);  // near the limit the speed may cross it several times
 }
 
-TEST_CASE("a callback that sleeps loses the force, and it comes back") {
+TEST_CASE("a callback that sleeps loses the force, and the force returns afterwards") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
@@ -124,7 +124,7 @@ TEST_CASE("a callback that sleeps loses the force, and it comes back") {
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
 }
 
-TEST_CASE("a force goes on until another one is set, while ticks and poses come") {
+TEST_CASE("a force continues until the program sets another force, while ticks and poses continue") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   int frames = 0;
@@ -138,7 +138,7 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
       if (++frames % 10 == 0) set_force({1, 0, 0});
     }));
   }
-  SUBCASE("set once, with later frames that only read") {
+  SUBCASE("the force is set once, and later frames only read") {
     CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
       double force_N[3];
       hdGetDoublev(HD_CURRENT_FORCE, force_N);
@@ -146,7 +146,7 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
       if (++frames == 1) set_force({1, 0, 0});
     }));
   }
-  SUBCASE("set once, without later frames") {
+  SUBCASE("the force is set once, without later frames") {
     CHECK(until([&] {
       if (++frames == 1) held.frame([] { set_force({1, 0, 0}); });
       return held.pulled_m(0) > 0.0028;
@@ -320,7 +320,7 @@ TEST_CASE("a force that the board cannot confirm to be off is an error of commun
   }
 }
 
-TEST_CASE("a lost link is back by itself, with the force off until the program asks for it again") {
+TEST_CASE("a lost connection returns automatically, and the force stays off until the program enables it again") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   const auto push = [] { set_force({1, 0, 0}); };
@@ -351,7 +351,7 @@ TEST_CASE("a lost link is back by itself, with the force off until the program a
   }));
 }
 
-TEST_CASE("a program hears nothing of the end of the one before, and gets its force") {
+TEST_CASE("a program is not affected by the end of the previous program, and gets its force") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));

@@ -85,7 +85,7 @@ TEST_CASE(
   CHECK(only_error() == HD_INVALID_VALUE);
 }
 
-TEST_CASE("a thread that is cancelled while it waits for the scheduler ends there, and the scheduler goes on") {
+TEST_CASE("a thread that is cancelled while it waits for the scheduler exits, and the scheduler continues") {
   Held held;
   static std::atomic<int> calls;
   static std::atomic<bool> is_in, may_go;

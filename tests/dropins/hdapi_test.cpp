@@ -78,7 +78,7 @@ TEST_CASE("a device with another protocol version is not opened, and the error c
   CHECK(says(HD_DEVICE_FAULT, "uses protocol version"));
 }
 
-TEST_CASE("a device is opened once, by any name, and may be opened again after it was disabled") {
+TEST_CASE("a device can be opened once under any name, and again after it was disabled") {
   Board board;
   forget_errors();
   const HHD device = hdInitDevice(nullptr);

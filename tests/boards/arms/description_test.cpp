@@ -108,7 +108,7 @@ TEST_CASE("a missing section or key is named with its section") {
   CHECK_SAYS(complaint(omni_with("probe_mass_kg = 0.015", "")), "probe_mass_kg is missing in section [simulation]");
 }
 
-TEST_CASE("an unknown key gets the nearest known one, its line and its section") {
+TEST_CASE("the error for an unknown key contains the nearest known key, the line and the section") {
   const auto text = complaint(omni_with("link_2_m = ", "lnk_2_m = "));
   CHECK_SAYS(text, "[parameters] has no key lnk_2_m: did you mean link_2_m?");
   CHECK_SAYS(text, "line 21");

@@ -69,7 +69,7 @@ TEST_CASE("the internal reference reads less of a VDDA that is higher, and its c
   CHECK(test.result(6) == doctest::Approx(counts_V / 3.1).epsilon(0.001));
 }
 
-TEST_CASE("an interrupt between the question and the sleep ends the sleep at once") {
+TEST_CASE("an interrupt between the check and the sleep instruction ends the sleep immediately") {
   for (const Mode mode : {Mode::exact, Mode::fast}) {
     CAPTURE(static_cast<int>(mode));
     ChipUnderTest test("sleep", mode);

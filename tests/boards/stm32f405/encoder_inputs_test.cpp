@@ -185,7 +185,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
     CHECK(encoder.count() < 300);
   }
 
-  TEST_CASE("a pulse that a sample misses does not end the row of samples, one that it sees does") {
+  TEST_CASE("a pulse between two samples does not restart the sample filter, and a sampled pulse does") {
     constexpr unsigned code = 7, samples = 8;
     constexpr Ticks sampling = 4 * timer_clock;
     for (const bool seen : {false, true}) {

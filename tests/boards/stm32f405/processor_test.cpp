@@ -29,7 +29,7 @@ TEST_SUITE("virtual chip: processor") {
     }
   }
 
-  TEST_CASE("SysTick comes every 1000 cycles of 16 MHz") {
+  TEST_CASE("SysTick occurs every 1000 cycles of 16 MHz") {
     ChipUnderTest test("exceptions");
     const auto& counters = test.chip.counters();
     std::vector<Ticks> times;
@@ -165,7 +165,7 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.chip.first_fault()->what.find("0x60000000") != std::string::npos);
   }
 
-  TEST_CASE("an if-then block that is stopped or interrupted in its middle goes on as it began") {
+  TEST_CASE("an if-then block that is stopped or interrupted continues correctly") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("conditional", mode);
@@ -179,7 +179,7 @@ TEST_SUITE("virtual chip: processor") {
     }
   }
 
-  TEST_CASE("an if-then block that a page divides goes on as it began") {
+  TEST_CASE("an if-then block across a page boundary continues correctly") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("conditional_across_pages", mode);

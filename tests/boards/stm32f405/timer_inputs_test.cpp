@@ -91,7 +91,7 @@ TEST_SUITE("virtual chip: timer inputs") {
     }
   }
 
-  TEST_CASE("switching a channel off forgets the events that its prescaler has counted") {
+  TEST_CASE("disabling a channel clears the event count of its prescaler") {
     Inputs inputs;
     inputs.write(tim3 + ccmr1, cc1_from_its_pin | 1 << 2);
     inputs.write(tim3 + ccer, cc1e);

@@ -95,7 +95,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
     }
   }
 
-  TEST_CASE("each violation is seen, and it alone") {
+  TEST_CASE("each violation is reported without any other violation") {
     for (const Case& planted : cases) {
       CAPTURE(info(planted.rule).name);
       const Planted faulty(planted.number);
@@ -128,7 +128,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
     CHECK(sentence(violations[0]).find("ADC2") != std::string::npos);
   }
 
-  TEST_CASE("silicon's effect comes with the message") {
+  TEST_CASE("a violation is reported, and has its effect on the chip") {
     SUBCASE("no FPU: a UsageFault, escalated") {
       for (const Mode mode : {Mode::exact, Mode::fast}) {
         const Planted faulty(1, mode);

@@ -135,7 +135,7 @@ TEST_CASE("a raised fault is shown, and one from before the start leads back to 
   CHECK(controller.state() == State::starting);
 }
 
-TEST_CASE("a motor that gets hot although nothing is asked of it is a fault until it has cooled") {
+TEST_CASE("a motor that heats up without a force is a fault until it has cooled") {
   protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
   set[protocol::Parameter::winding_time_constant_s] = 0.1f;
   set[protocol::Parameter::winding_heat_part] = 1.0f;
@@ -157,7 +157,7 @@ TEST_CASE("a motor that gets hot although nothing is asked of it is a fault unti
   CHECK(controller.state() == State::ready);
 }
 
-TEST_CASE("a motor that was hot before a restart is as hot after it, and goes on to cool") {
+TEST_CASE("a motor has the same heat before and after a restart, and continues to cool") {
   protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
   set[protocol::Parameter::winding_time_constant_s] = 0.2f;
   set[protocol::Parameter::housing_time_constant_s] = 2.0f;

@@ -20,7 +20,7 @@ control::Shapes plane_over_the_wrap(const control::Vector3& probe_m) {
   return shapes;
 }
 
-TEST_CASE("over the wrap of the count of periods the signal path goes on as at any other time") {
+TEST_CASE("the signal path is not affected by the wrap of the period counter") {
   const control::Settings settings = tests::settings_near_wall();
   Controller sooner = tests::active_controller(settings);
   Controller wraps = tests::active_controller(settings, {}, 0u - sooner.periods() - periods_before_wrap);

@@ -37,8 +37,7 @@ TEST_CASE("during self-test pulses, the over-current limit of a motor is the max
   }
 }
 
-TEST_CASE(
-    "while the self-test's pulses run a reading near a rail is an over-current at once, whichever motor's it is") {
+TEST_CASE("during self-test pulses, a reading near a rail of any motor immediately raises over_current") {
   Settings settings = plain_settings();
   settings.limits.over_current_A.fill(100.0f);
   for (std::size_t motor = 0; motor < 3; ++motor) {

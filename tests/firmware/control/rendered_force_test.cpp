@@ -168,7 +168,7 @@ TEST_CASE("a plane that appears, moves by 5 mm or disappears under a pressing ha
   }
 }
 
-TEST_CASE("a shape whose life ends under a pressing hand lets go softly") {
+TEST_CASE("a shape whose life ends under a pressing hand releases the hand slowly") {
   StillArm arm;
   arm.drive({}, ForceMode::instead_of_walls);
   arm.run(800);

@@ -99,7 +99,7 @@ TEST_CASE("after disable_force, the force falls to zero within soft_landing_s, a
     controller.carry_out(tests::command(Command::stop));
     CHECK_FALSE(tests::run(controller, samples, pushed, 1).enabled);
   }
-  SUBCASE("one that is asked for again rises from where it is") {
+  SUBCASE("a force that is enabled during the landing rises from its present value") {
     controller.carry_out(tests::command(Command::enable_force));
     tests::run(controller, samples, pushed, 2 * ramp_periods);
     controller.carry_out(tests::command(Command::disable_force));
@@ -224,7 +224,7 @@ TEST_CASE("an arm whose force a user stops is not braked, however fast it is") {
   CHECK_FALSE(drive.brake);
 }
 
-TEST_CASE("the brake ends with the fault, and with a bridge that cannot be trusted") {
+TEST_CASE("the brake ends with the fault, and with an unreliable bridge") {
   const Settings settings = free_space();
   Samples samples = tests::samples_at_rest();
   Controller controller = tests::active_controller(settings);

@@ -251,8 +251,7 @@ TEST_CASE("a test pulse ends with a stop, a host that falls silent and an arm th
   CHECK(fast.state() == State::ready);
 }
 
-TEST_CASE(
-    "a test pulse moves no more energy than the reserve, whichever way its encoder counts, then rests for its time") {
+TEST_CASE("a test pulse transfers at most the energy reserve for either encoder direction, and a rest follows it") {
   constexpr float reserve_J = 0.004f, current_A = 0.5f, duration_s = 0.1f;
   protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
   set[protocol::Parameter::energy_reserve_J] = reserve_J;

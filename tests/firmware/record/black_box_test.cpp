@@ -202,7 +202,7 @@ TEST_CASE("a late main loop misses rows but neither the fault's period nor anybo
   for (std::size_t i = 1; i < periods.size(); ++i) CHECK(periods[i] > periods[i - 1]);
 }
 
-TEST_CASE("a main loop that comes when the time after a fault is over adds nothing to it") {
+TEST_CASE("a main loop that runs after the time of a fault adds nothing to the black box") {
   Board board;
   board.run(1008, State::active);
   board.run(step + 1, State::fault, Fault::supply_low);

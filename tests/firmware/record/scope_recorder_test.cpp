@@ -150,7 +150,7 @@ TEST_CASE("32 signals, and the last ones of the table") {
   check_round_trip(select(32, static_cast<std::uint8_t>(protocol::signal_count - 32)), ScopeEncoding::changes, 200);
 }
 
-TEST_CASE("wide and narrow signals in turn, 32 of them, whichever comes first") {
+TEST_CASE("a selection of 32 alternating wide and narrow signals can be decoded, with either kind first") {
   for (const std::size_t narrow_remainder : {0u, 1u}) {
     SignalSelection selection = select(32);
     for (std::size_t i = 0; i < 32; ++i)
@@ -246,7 +246,7 @@ TEST_CASE("new recordings do not change a frame that is being sent") {
   CHECK(std::memcmp(frame.data(), copy.data(), copy.size()) == 0);
 }
 
-TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the one before") {
+TEST_CASE("a new selection starts at sequence 0 and discards the samples of the previous selection") {
   link::Link& fresh = test::fresh_link();
   link::ScopeRecorder& scope = fresh.scope;
   scope.select(select(14), 1);
@@ -277,7 +277,7 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
   CHECK(scope.samples_dropped() == 0);
 }
 
-TEST_CASE("a main loop that comes late loses nothing up to the ring's length, beyond it the oldest samples, counted") {
+TEST_CASE("a late main loop loses no samples up to the ring length, and then loses and counts the oldest samples") {
   const SignalSelection selection = select(14);
   for (const std::uint32_t late_periods : {link::SampleRing::readable - 1, link::SampleRing::readable + 25}) {
     link::Link& fresh = test::fresh_link();
@@ -306,7 +306,7 @@ TEST_CASE("a main loop that comes late loses nothing up to the ring's length, be
   }
 }
 
-TEST_CASE("the main loop packs a few samples each time that it comes round") {
+TEST_CASE("each pass of the main loop packs a few samples") {
   link::Link& fresh = test::fresh_link();
   link::ScopeRecorder& scope = fresh.scope;
   scope.select(select(14), 1);

@@ -93,7 +93,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(asked_by<Monitor>("qRcmd,7265736574").command == "reset");
   }
 
-  TEST_CASE("the description of the target comes in parts, the last one marked") {
+  TEST_CASE("the target description is sent in parts, and the last part is marked") {
     std::string whole;
     for (unsigned offset = 0;; offset += 0x100) {
       char packet[64];

@@ -23,7 +23,7 @@ TEST_CASE("a read crosses to the bus, waits for its edge and takes two of its cy
   CHECK(bus.access(in_core, false, 5000) == 1);
 }
 
-TEST_CASE("a write leaves the core at once; the next access of the same bridge waits for it") {
+TEST_CASE("a write does not delay the core, but delays the next access to the same bridge") {
   auto bus = bus_at(168'000'000);
   CHECK(bus.access(on_apb1, true, 1000) == 0);
   CHECK(bus.access(on_apb2, true, 1000) == 0);
@@ -50,7 +50,7 @@ TEST_CASE("frequencies of a crystal that is off keep their ratio") {
   }
 }
 
-TEST_CASE("a bus whose clock stands has none to wait for") {
+TEST_CASE("an access to a bus with a stopped clock does not wait for this clock") {
   PeripheralBus bus(likely);
   bus.set_clocks(168'000'000, 0, 84'000'000);
   CHECK(bus.access(on_apb1, false, 1001) == 1 + 2);

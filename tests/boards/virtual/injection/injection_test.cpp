@@ -68,7 +68,7 @@ TEST_CASE("a wire is selected by its pin or its function, and is named after its
   CHECK(shorted.for_s == 1.0);
 }
 
-TEST_CASE("memory goes by its address, or by the seed") {
+TEST_CASE("a memory fault has an address, or the seed selects the address") {
   CHECK(parse_injection("ram_bit:0x20000100=3", board::omni_driver).address == 0x2000'0100u);
   CHECK(parse_injection("ram_bit:536871168", board::omni_driver).address == 0x2000'0100u);
   CHECK_FALSE(parse_injection("flash_bit", board::omni_driver).address);

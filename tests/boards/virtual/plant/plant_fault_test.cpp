@@ -52,7 +52,7 @@ double mean_measured_A(DrivenPlant& driven, unsigned motor) {
 
 }  // namespace
 
-TEST_CASE("an encoder's disc that stands shows no edge, and its counts stay lost") {
+TEST_CASE("an encoder with a stuck disc shows no edges, and its counts remain lost") {
   Swinging swinging;
   swinging.driven.plant.encoder_fault(0).set_stuck(true);
   swinging.driven.idle(0.02);
@@ -110,7 +110,7 @@ TEST_CASE("a shunt amplifier with an offset, another gain, at a rail or frozen")
   CHECK(driven.measured_A(0) == frozen_A);
 }
 
-TEST_CASE("an open motor has no current and no torque, at once, and both again when healed") {
+TEST_CASE("an open motor immediately has no current and no torque, and both return after the fault is healed") {
   auto driven = driven_at({0.3, 0.3, 0.3});
   CHECK(current_A(driven, 1) > 1.0);
   driven.plant.set_motor_fault(1, {.open = true});
@@ -180,7 +180,8 @@ TEST_CASE(
   CHECK_FALSE(driven.plant.truth(driven.now).bridge_fault);
 }
 
-TEST_CASE("a fused leg conducts though the bridge is disabled: a motor that is turned brakes through it and a diode") {
+TEST_CASE(
+    "a shorted leg conducts while the bridge is disabled, so that a turning motor brakes through it and a diode") {
   auto arm = test::frictionless(test::omni());
   arm.simulation.gravity_m_per_s2 = 0.0;
   for (const double speed_rad_s : {20.0, -20.0}) {

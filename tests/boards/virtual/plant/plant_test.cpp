@@ -265,7 +265,7 @@ TEST_CASE("the supply's reading follows through its divider's 0.9 ms") {
   CHECK(driven.read_V(board::omni_driver.supply) * 11.0 == doctest::Approx(24.0 - 6.0 * 0.10).epsilon(0.004));
 }
 
-TEST_CASE("a supply that hunts swings the bus to both sides, a hundred times a second, and comes to rest again") {
+TEST_CASE("an unstable supply oscillates around its voltage at 100 Hz, and comes to rest afterwards") {
   DrivenPlant driven(test::omni());
   driven.plant.swing_supply_by_V(3.0);
   int rises = 0;

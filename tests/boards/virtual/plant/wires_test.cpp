@@ -37,7 +37,7 @@ constexpr PinName a0{'A', 0}, a1{'A', 1}, c3{'C', 3};
 
 }  // namespace
 
-TEST_CASE("sound wires hand on levels, times and voltages") {
+TEST_CASE("healthy wires transfer levels, times and voltages") {
   Wired w;
   w.wires.drive('A', 0, PinLevel::high, 77);
   CHECK(w.ends.seen[{'A', 0}] == PinLevel::high);
@@ -109,7 +109,7 @@ TEST_CASE("an analogue wire that is broken, shorted or frozen") {
   CHECK(w.wires.analog_V('C', 3, ticks(0.504)) == doctest::Approx(std::exp(-2.0)));
 }
 
-TEST_CASE("of two wires that touch low wins, and voltages meet half-way") {
+TEST_CASE("two shorted wires have the low level, or the mean of their voltages") {
   Wired w;
   w.wires.drive('A', 0, PinLevel::high, 1);
   w.wires.drive('A', 1, PinLevel::low, 1);

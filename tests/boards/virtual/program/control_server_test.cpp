@@ -103,7 +103,7 @@ TEST_SUITE("virtual board: control socket") {
     CHECK(is_accepted);
   }
 
-  TEST_CASE("the file of a client that has gone is closed without waiting for another client") {
+  TEST_CASE("the file of a disconnected client is closed without another client") {
     AnsweringServer server;
     const auto before = open_files();
     {

@@ -31,7 +31,7 @@ TEST_CASE("a request selects a command by name and accepts only the keys of this
                  "the command \"usb\" has no key \"on\"; its keys are: connected"));
 }
 
-TEST_CASE("every command is in the table once, and in the help") {
+TEST_CASE("every command is in the table and in the help once") {
   const std::string help = explain_commands();
   CHECK(command_table().size() == static_cast<std::size_t>(Command::trace) + 1);
   std::size_t row = 0;

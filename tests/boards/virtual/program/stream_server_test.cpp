@@ -72,7 +72,7 @@ TEST_SUITE("virtual board: streams") {
       CHECK_FALSE(may_be_terminal(begin));
   }
 
-  TEST_CASE("a client whose first bytes are not welcome is disconnected and never seen, and the next one is served") {
+  TEST_CASE("a client with wrong first bytes is disconnected without a report, and the next client is served") {
     Receiver receiver(&may_be_gdb);
     for (const char* begin : {"GET / HTTP/1.1\r\n\r\n$M20000000,4:00000000#88", "P"}) {
       PlainClient stranger(receiver.address());

@@ -136,7 +136,7 @@ struct Race {
 
 }  // namespace
 
-TEST_CASE("a SETUP that comes while the one before is answered gets its own answer, after whichever access it comes") {
+TEST_CASE("a SETUP packet during the answer to the previous packet is answered correctly after every register access") {
   Race race;
   for (const Setup& first : {descriptor_request(device_descriptor), set_idle}) {
     bool too_late = false;

@@ -54,7 +54,7 @@ TEST_CASE(
   CHECK(pace.is_starved());
 }
 
-TEST_CASE("an endpoint that the host never asked is not waited for, nor are OUT and control transfers") {
+TEST_CASE("the board does not wait for an endpoint without requests, or for OUT and control transfers") {
   HostPace pace;
   submit(pace, 2, 2);
   CHECK_FALSE(pace.is_starved());
@@ -106,7 +106,8 @@ TEST_CASE("a host that takes a request back, gets an error, is too late or is an
   CHECK(pace.is_starved());
 }
 
-TEST_CASE("a host that streams is waited for without a limit, but not while it waits itself or asks one by one") {
+TEST_CASE(
+    "the board waits indefinitely for a host that streams, but not while the host waits or sends single requests") {
   HostPace pace;
   submit(pace, 1, 2);
   answer(pace, 1, 2);

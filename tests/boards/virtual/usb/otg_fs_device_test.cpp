@@ -119,14 +119,14 @@ TEST_CASE("a pull-up without VBUS is reported immediately when it is connected, 
     bench.wait_us(0.2e6);
     CHECK(bench.log.has("supplies no VBUS"));
   }
-  SUBCASE("it goes in time") {
+  SUBCASE("the pull-up is removed in time") {
     bench.write(dctl, 2);
     bench.wait_us(0.2e6);
     CHECK(bench.log.sentences.empty());
     bench.write(dctl, 0);
     CHECK(bench.log.has("supplies no VBUS"));
   }
-  SUBCASE("VBUS comes back") {
+  SUBCASE("VBUS returns") {
     bench.core.set_bus_power(true);
     bench.wait_us(0.2e6);
     CHECK(bench.log.sentences.empty());

@@ -53,7 +53,7 @@ struct Host {
 
 }  // namespace
 
-TEST_CASE("a second configuration starts every data toggle again, whichever stood where") {
+TEST_CASE("a second configuration resets every data toggle from any state") {
   Host host;
   std::uint8_t token = 0;
   // The rounds send different numbers of packets, so the data toggle has both values before a configuration.
@@ -74,7 +74,7 @@ TEST_CASE("a second configuration starts every data toggle again, whichever stoo
   for (const auto& sentence : host.bus.violations()) FAIL_CHECK(sentence);
 }
 
-TEST_CASE("a device that is not configured any more answers on endpoint 0 alone") {
+TEST_CASE("a device without a configuration answers on endpoint 0 only") {
   using virtual_board::Handshake;
   Host host;
   host.configure();

@@ -176,7 +176,7 @@ TEST_CASE("bits that are stuffed take bus time") {
   CHECK(added_bits == doctest::Approx(12 * (86 - 1)).epsilon(0.001));
 }
 
-TEST_CASE("an interrupt OUT goes out in the frame after its submission, whenever the one before it went out") {
+TEST_CASE("an interrupt OUT transfer is sent in the frame after its submission, independent of the previous transfer") {
   RootPortBench bench;
   bench.use();
   for (int i = 0; i < 3; ++i) {
@@ -284,7 +284,7 @@ TEST_CASE("a packet larger than the room left is an overflow") {
   CHECK(bench.outcomes.at(urb).data == patterned(20));
 }
 
-TEST_CASE("endpoints exist only once configured") {
+TEST_CASE("endpoints exist only after the configuration") {
   RootPortBench bench;
   bench.use(false);
   bench.run_for(0.1);

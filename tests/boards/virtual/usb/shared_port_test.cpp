@@ -44,7 +44,7 @@ void send_report(LiveBoard& board, int first) {
 
 }  // namespace
 
-TEST_CASE("each report reaches every program that asks, and the first alone resets the device") {
+TEST_CASE("each report reaches every program with a request, and only the first program resets the device") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   Program first(board);

@@ -50,7 +50,7 @@ usbip::ReturnSubmit ask_for_device_descriptor(UsbIpClient& client) {
   return reply;
 }
 
-TEST_CASE("the device list shows descriptors once the device is enumerated") {
+TEST_CASE("the device list contains the descriptors after the enumeration") {
   LiveBoard board;
   board.call([&] { board.usb.disconnect(); });
   {
@@ -196,7 +196,7 @@ TEST_CASE(
   CHECK(board.scheduler.now() > before);
 }
 
-TEST_CASE("an unlinked transfer is answered once, by the unlink") {
+TEST_CASE("an unlinked transfer has only the answer to the unlink request") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
@@ -400,7 +400,8 @@ TEST_CASE("a client of another protocol is disconnected at its first byte") {
   }
 }
 
-TEST_CASE("over a Unix socket the device is imported likewise, and the board knows the process that it waits for") {
+TEST_CASE(
+    "over a Unix socket a client can import the device, and the board identifies the process for which it waits") {
   const tests::TemporaryDirectory directory;
   LiveBoard board({.path = directory / "usbip"});
   REQUIRE(board.wait_until_enumerated());

@@ -53,7 +53,7 @@ TEST_CASE("edges and corners are contact on two and three axes") {
   CHECK(control::wall_force_N(edge, {}, wall).z == 0.0f);
 }
 
-TEST_CASE("the damper brakes the way in: F = k d + c d'") {
+TEST_CASE("the damper resists the motion into the wall: F = k d + c d'") {
   const Contact contact = control::find_contact({0.051f, 0.0f, 0.0f}, box);
   const Vector3 force_N = control::wall_force_N(contact, {0.2f, 0.0f, 0.0f}, wall);
   CHECK(force_N.x == doctest::Approx(-(800.0f * 0.001f + 2.0f * 0.2f)).epsilon(1e-4));

@@ -40,7 +40,7 @@ TEST_CASE("a 32-bit timer is its own signed number") {
 }
 
 TEST_CASE(
-    "more counts in a period than an arm can make are a jump, of any encoder, either way, over the counts' wrap") {
+    "more counts in a period than the jump limit are a jump, for any encoder, in both directions and across the wrap") {
   constexpr std::array<std::int32_t, 3> before{0, -70'000, 0x7FFFFFFF - 3};
   for (std::size_t i = 0; i < 3; ++i)
     for (const std::int32_t step : {0, 1, 15, -15, -16, 16, 17, -17, 400, -400, 32'767, -32'768}) {

@@ -231,7 +231,7 @@ TEST_CASE("the paper's Eq. 10 to 15 equal virtual work at theta1 = pi/2, and onl
   CHECK(largest_difference_elsewhere_Nm > 0.1f);
 }
 
-TEST_CASE("a push in the x-z plane of the paper's arm asks nothing of motor 1") {
+TEST_CASE("a force in the x-z plane requires no torque of motor 1 of the paper arm") {
   const control::Arm arm = control::prepare(tests::paper_parameters()).arm;
   const control::Pose pose = control::forward_kinematics({0.0f, 0.9f, -1.7f}, arm);
   const Triple torque = control::joint_torques(pose.jacobian, {2.0f, 0.0f, -1.0f});

@@ -27,7 +27,7 @@ ForceTarget target(const Vector3& force_N, std::uint32_t interval_periods = 20,
 
 float length(const Vector3& vector) { return std::sqrt(control::dot(vector, vector)); }
 
-TEST_CASE("between two reports the force goes in a straight line") {
+TEST_CASE("the force is interpolated linearly between two reports") {
   ProgramForce program;
   program.set_target(target({0.4f, 0.0f, -0.2f}), limits);
   for (int period = 1; period <= 20; ++period) {
@@ -52,7 +52,7 @@ TEST_CASE("a report beyond the limit keeps its direction") {
   CHECK(program.force_N.y / program.force_N.x == doctest::Approx(-4.0f / 3.0f).epsilon(1e-4));
 }
 
-TEST_CASE("the force never changes faster than its bound, and gets there all the same") {
+TEST_CASE("the force never changes faster than its limit, and still reaches its target") {
   ProgramForce program;
   program.set_target(target({-3.0f, 0.0f, 0.0f}, 1), limits);
   for (int period = 0; period < 100; ++period) program.advance(limits);
@@ -70,7 +70,7 @@ TEST_CASE("the force never changes faster than its bound, and gets there all the
   }
 }
 
-TEST_CASE("without a report the force stays for the expiry and is gone 10 ms later, without a jump") {
+TEST_CASE("without a new report the force remains until its expiry, and fades to zero within 10 ms without a jump") {
   ProgramForce program;
   program.set_target(target({2.0f, 0.0f, 0.0f}), limits);
   for (std::uint32_t period = 0; period < limits.expiry_periods; ++period) program.advance(limits);

@@ -65,7 +65,7 @@ TEST_CASE("near the speed limit, a program can no longer drive the arm, and the 
   CHECK_FALSE(arm.reached(Limit::energy));
 }
 
-TEST_CASE("a program that brakes such an arm brakes it") {
+TEST_CASE("a program can brake an arm near the speed limit") {
   const float limit_m_per_s = FastArm(10.0f, 2.0f).fastest_m_per_s * 1.03f;
   const FastArm arm(limit_m_per_s, -2.0f);
   CHECK(arm.at_fast_N > 1.8f);

@@ -10,7 +10,7 @@ namespace {
 
 using namespace inkwell::control;
 
-TEST_CASE("sine and cosine within 1.2e-7 over twenty radians either way") {
+TEST_CASE("sine and cosine have an error of at most 1.2e-7 over twenty radians in both directions") {
 #ifdef INKWELL_ON_PC
   constexpr int steps = 2'000'000;
 #else

@@ -72,7 +72,7 @@ TEST_CASE("a motor that resists with more than the force limit lets all go, of a
   CHECK_FALSE(Brake{}.shorts({}, limit_A));
 }
 
-TEST_CASE("a brake is gentle once the host was silent, until the next begins") {
+TEST_CASE("the brake is gentle after the host was silent, until the next brake begins") {
   constexpr control::Triple limit_A{1.0f, 1.0f, 1.0f}, resists_A{0.5f, -0.5f, 0.5f};
   Brake brake = begun(condition(Fault::over_speed));
   CHECK(brake.shorts(resists_A, limit_A));

@@ -49,7 +49,7 @@ TEST_CASE("a joint that turns at 1 rad/s with a dead wire is noticed within a te
   CHECK(periods_until_dead(turning(0.5f * counts_per_rad, with_dead_wire)) == never);
 }
 
-TEST_CASE("a motion that was slow for a while is noticed once it is fast") {
+TEST_CASE("a dead wire is detected after a slow motion becomes fast") {
   const auto faster = [](float time_s) { return with_dead_wire(std::llround(2'000.0f * time_s * time_s)); };
   const auto noticed_s = static_cast<float>(periods_until_dead(faster)) * protocol::servo_period_s;
   CHECK(noticed_s > 0.5f);

@@ -335,7 +335,7 @@ TEST_CASE("at the force limit the current of a motor that turns follows as well"
   }
 }
 
-TEST_CASE("a motor that turns is believed with the back EMF of its speed, and not without") {
+TEST_CASE("the voltage of a motor that turns is plausible only with the back EMF of its speed") {
   for (std::size_t motor = 0; motor < 3; ++motor)
     for (const float back_emf_share : {1.0f, 0.0f}) {
       CAPTURE(motor);

@@ -45,7 +45,7 @@ TEST_CASE("the continuous current leads to a heat of one, 63 % of it in one time
   CHECK(motors.heat[0] == doctest::Approx(1.0f).epsilon(0.003));
 }
 
-TEST_CASE("heat goes with the square of the current, and away without one") {
+TEST_CASE("the heat follows the square of the current, and falls without a current") {
   MotorHeat motors;
   run(motors, {2.0f * continuous_A, 0.0f, 0.0f}, scale(0.1f), 1.0f);
   CHECK(motors.heat[0] == doctest::Approx(4.0f).epsilon(0.001));

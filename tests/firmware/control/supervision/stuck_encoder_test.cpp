@@ -88,7 +88,7 @@ TEST_CASE("the current change that moves a joint does not count towards a stuck 
   CHECK(detected == 0);
 }
 
-TEST_CASE("an arm that turns round stands for a moment while a force may rise") {
+TEST_CASE("a reversing arm is stuck only if it is stationary for too long during a current change") {
   // The joint stops at 0.2 s, when the current starts to rise by 8 A. The joint reverses within the allowed time in the
   // first run and too late in the second run.
   for (const float stationary_s : {0.09f, 0.2f}) {

@@ -41,7 +41,7 @@ TEST_CASE("a fault without a row in the condition table has the index after the 
   CHECK(protocol::index_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::condition_table.size());
 }
 
-TEST_CASE("the way from power-up to force") {
+TEST_CASE("the states lead from power-up to force") {
   CHECK(next(State::starting, events(Event::enable)) == State::starting);
   CHECK(next(State::starting, events(Event::enable, Event::measured)) == State::testing);
   CHECK(next(State::testing, events(Event::enable, Event::measured)) == State::testing);
@@ -186,7 +186,7 @@ TEST_CASE("each fault is looked for in its states and in no other") {
     }
 }
 
-TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause is gone") {
+TEST_CASE("a fault remains until it is cleared, and can be cleared only after its cause has disappeared") {
   const Events clear = good | events(Event::clear);
   for (const FaultCase& row : fault_cases()) {
     CAPTURE(static_cast<int>(row.fault));
