@@ -82,7 +82,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the resistance is known from the test: a motor with a third more has its whole current at the force limit") {
+TEST_CASE("the self-test measures the resistance, so that a motor with 33 % more still has its full current") {
   PushedBoard board;
   for (auto& motor : board.motors.motors) motor.resistance_ohm *= 1.33f;
   board.test_after_start();

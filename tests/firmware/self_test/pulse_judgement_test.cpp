@@ -71,7 +71,7 @@ TEST_CASE("healthy motors pass with the right resistance, the right bridge loss 
   CHECK(judgement.wires.figure < 0.01f);
 }
 
-TEST_CASE("a motor passes from 10 % less resistance to 39 % more, at any sound supply, with a sensor 3 % off") {
+TEST_CASE("a motor passes with 10 % less to 39 % more resistance, at any valid supply and with a sensor error of 3 %") {
   for (const float part : {0.9f, 1.0f, 1.39f})
     for (const float supply_V : {13.0f, 18.0f, 23.0f})
       for (const float gain : {0.97f, 1.03f}) {

@@ -119,7 +119,7 @@ TEST_CASE("a self-test of an arm that always moves stops with the result moved a
   CHECK(periods < protocol::servo_rate_Hz / 5);
 }
 
-TEST_CASE("a fast arm gets no pulses, because bridges that are on would brake it; one that comes to rest does") {
+TEST_CASE("a fast arm gets no pulses, because enabled bridges would brake it, and a stationary arm gets pulses") {
   for (const int direction : {1, -1}) {
     Board board;
     board.run_while(State::starting);
@@ -236,7 +236,7 @@ TEST_CASE("a current sensor fault also fails the item current_offsets, although 
   CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::not_done);
 }
 
-TEST_CASE("the offsets of the current sensors are those of now, not of the start") {
+TEST_CASE("the reported offsets of the current sensors are the present offsets") {
   Board with_offset;
   with_offset.offset_A[0] = 0.1f;  // the controller subtracts the offset, but the report shows it
   with_offset.run_while(State::starting);
@@ -273,7 +273,7 @@ TEST_CASE("damaged memory fails its self-test item, although the item passed at 
   CHECK(board.result(SelfTestItem::flash) == SelfTestResult::failed);
 }
 
-TEST_CASE("a fault in the middle of the pulses switches off at once, and the next test begins with the first motor") {
+TEST_CASE("a fault during the pulses switches off immediately, and the next test starts with the first motor") {
   Board board;
   board.run_while(State::starting);
   while (board.driven_periods < 130) board.run(1);
@@ -338,7 +338,7 @@ TEST_CASE("the second of two self-tests starts again if the main loop missed the
   CHECK(board.link.self_test.report().tests_ended == 1);
 }
 
-TEST_CASE("another fault's clearing passes the test by, once it has passed") {
+TEST_CASE("clearing another fault does not repeat a self-test that has passed") {
   Board board;
   board.run_while(State::starting);
   board.run_while(State::testing);

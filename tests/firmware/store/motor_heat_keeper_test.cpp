@@ -79,7 +79,7 @@ TEST_CASE("motor heat: each start reads the heat that was stored most recently")
   check_is(keeper.start(false), warm);
 }
 
-TEST_CASE("motor heat: memory after power-up is not believed") {
+TEST_CASE("motor heat: memory content after power-up is ignored") {
   for (const std::uint32_t word : {0u, 0xFFFF'FFFFu, 0x3E3E'3E3Eu, 0x5A5A'5A5Au}) {
     MotorHeatKeeper keeper = filled_with(word);
     CHECK_FALSE(keeper.start(false).has_value());
@@ -88,7 +88,7 @@ TEST_CASE("motor heat: memory after power-up is not believed") {
   }
 }
 
-TEST_CASE("motor heat: the power's coming forgets all of it, also for the starts after it") {
+TEST_CASE("motor heat: a power-on erases it for this start and the later starts") {
   MotorHeatKeeper keeper = std::bit_cast<MotorHeatKeeper>(memory_with(warm, warmer));
   CHECK_FALSE(keeper.start(true).has_value());
   CHECK_FALSE(keeper.start(false).has_value());
@@ -96,7 +96,7 @@ TEST_CASE("motor heat: the power's coming forgets all of it, also for the starts
   check_is(keeper.start(false), warm);
 }
 
-TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and the one before it is found") {
+TEST_CASE("motor heat: a copy that a restart interrupted is ignored, and the previous copy is used") {
   const auto before = std::bit_cast<Words>(memory_with(warmer, warm));
   MotorHeatKeeper keeper = std::bit_cast<MotorHeatKeeper>(before);
   keeper.store(warmer);
@@ -149,7 +149,7 @@ TEST_CASE("motor heat: a bit that has changed in the newest copy leaves the one 
   }
 }
 
-TEST_CASE("motor heat: the newest is known when numbers wrap") {
+TEST_CASE("motor heat: the newest copy is found when the numbers wrap") {
   Memory memory = memory_with(warm, warmer);
   memory.slots[0].left.number = 0;
   memory.slots[1].left.number = 0xFFFF'FFFF;

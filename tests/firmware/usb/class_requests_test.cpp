@@ -100,7 +100,7 @@ TEST_CASE("firmware update: with a force, or one about to come, a detach has no 
   CHECK(bench.device.leaves_for_update());
 }
 
-TEST_CASE("firmware update: a reset of the bus forgets it") {
+TEST_CASE("firmware update: a bus reset cancels it") {
   DeviceBench bench;
   bench.configure();
   const auto detach = request(0x21, 0, 1000, 3, 0);
@@ -126,7 +126,7 @@ TEST_CASE("firmware update: other requests, directions and lengths are refused")
   CHECK_FALSE(bench.device.leaves_for_update());
 }
 
-TEST_CASE("HID: the newest pose can be asked for") {
+TEST_CASE("HID: the host can request the newest pose") {
   DeviceBench bench;
   bench.configure();
   const auto read = [&] {

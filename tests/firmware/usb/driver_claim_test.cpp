@@ -151,7 +151,7 @@ TEST_CASE("claim: it does not end where the count of control periods wraps, nor 
   CHECK(bench.driver().is_driven == 0);
 }
 
-TEST_CASE("claim: the time that a program drives goes on where the count of control periods wraps") {
+TEST_CASE("claim: the driving time of a program continues across the wrap of the period counter") {
   link::DriverClaim driver;
   std::uint32_t now_periods = 12'345;
   const auto request = claim_report(ClaimOperation::claim, first);

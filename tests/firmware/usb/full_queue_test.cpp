@@ -69,7 +69,7 @@ TEST_CASE("while the command queue is full, commands are answered with NAK, and 
   bench.check_nothing_was_lost();
 }
 
-TEST_CASE("a command that comes by SET_REPORT while the queue is full is dropped, and its result is busy") {
+TEST_CASE("a SET_REPORT command during a full queue is dropped, and its result is busy") {
   FullQueue bench;
   const auto send = [&](std::uint32_t ticket) {
     const protocol::CommandReport by_control = command(Command::clear_fault, 99, 0, ticket);

@@ -55,7 +55,7 @@ TEST_CASE("a control read returns exactly wLength bytes, or the whole report if 
   }
 }
 
-TEST_CASE("an answer that is a multiple of 64 ends with an empty packet only if more was asked for") {
+TEST_CASE("an answer with a multiple of 64 bytes ends with an empty packet only if the host requested more bytes") {
   DeviceBench bench;
   bench.configure();
   bench.run(20);
@@ -196,7 +196,7 @@ TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
   }
 }
 
-TEST_CASE("a request that goes to the host with wLength 0, or to the device with data it has not, is survived") {
+TEST_CASE("the device stalls a control request with an unexpected direction or length") {
   DeviceBench bench;
   bench.configure();
   bench.setup(request(0x00, 9, 1, 0, 4));  // SET_CONFIGURATION with data

@@ -80,7 +80,7 @@ void check_lengths(PaddingBench& bench, ReportId id, ReportKind kind, std::span<
 
 }  // namespace
 
-TEST_CASE("padding: the longest reports are those that their kinds declare") {
+TEST_CASE("padding: the longest reports have the declared sizes") {
   CHECK(longest_output == sizeof(protocol::CommandReport));
   CHECK(longest_feature == protocol::force_law_report_maximum);
   CHECK(usb::ControlEndpoint::receive_maximum == longest_feature);

@@ -52,7 +52,7 @@ TEST_CASE("a host that did not listen for a while has lost nothing") {
   CHECK(poses_dropped(bench) == 0);
 }
 
-TEST_CASE("a main loop that is held up at a frame's end costs no pose: the host finds an older one") {
+TEST_CASE("a main loop that is delayed at the end of a frame loses no pose, and the host reads an older pose") {
   DeviceBench bench;
   bench.configure();
   pass_frame(bench);
@@ -71,7 +71,7 @@ TEST_CASE("a main loop that is held up at a frame's end costs no pose: the host 
   CHECK(poses_dropped(bench) == 0);
 }
 
-TEST_CASE("a host that asks just before a frame's end gets no report twice") {
+TEST_CASE("a host that reads just before the end of a frame gets no report twice") {
   DeviceBench bench;
   bench.configure();
   pass_frame(bench);

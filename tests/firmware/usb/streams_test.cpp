@@ -158,7 +158,7 @@ TEST_CASE("a halted scope endpoint starts the frame again from its first byte") 
   CHECK(header_of(read_frame(bench)).sequence == 1);
 }
 
-TEST_CASE("a halted pose endpoint sends the report that was on its way again") {
+TEST_CASE("a halted pose endpoint sends the pending report again") {
   DeviceBench bench;
   bench.configure();
   pass_frame(bench);
@@ -166,7 +166,7 @@ TEST_CASE("a halted pose endpoint sends the report that was on its way again") {
   CHECK(read_pose(bench)->time_periods == bench.periods - 1);
 }
 
-TEST_CASE("suspend switches the force and the scope off, and resume goes on with fresh poses") {
+TEST_CASE("suspend switches the force and the scope off, and new poses follow the resume") {
   DeviceBench bench;
   bench.configure();
   select_scope(bench, 14, 1);

@@ -182,7 +182,7 @@ TEST_CASE("a session notices after one second of device time that another progra
   CHECK(session.status().store->at_next_start == stored);
 }
 
-TEST_CASE("a request to store does not reach the device that comes") {
+TEST_CASE("a store request without a device does not reach the next device") {
   FakeUsbipServer server;
   std::atomic<bool> is_there = false;
   device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });
@@ -198,7 +198,7 @@ TEST_CASE("a request to store does not reach the device that comes") {
   CHECK_FALSE(was_sent(Command::store_parameters));
 }
 
-TEST_CASE("a request to store that waits while the connection breaks is forgotten with it") {
+TEST_CASE("a pending store request is discarded when the connection breaks") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   REQUIRE(eventually([&] { return is_connected(session); }));

@@ -31,7 +31,7 @@ Ended run(std::vector<std::string> words, const std::filesystem::path& folder = 
 
 }  // namespace
 
-TEST_CASE("a child program gets its arguments as they are, its folder, and an empty standard input") {
+TEST_CASE("a child program gets its arguments unchanged, its folder, and an empty standard input") {
   const tests::TemporaryDirectory directory;
   const std::string marker = directory.file("marker");
   const auto printed =
@@ -55,7 +55,7 @@ TEST_CASE("a child program's errors, exit code and signal come back, and one tha
   CHECK(contains(said, ". Do without it."));
 }
 
-TEST_CASE("a private folder is empty, for this user only, and goes away with its files") {
+TEST_CASE("a private folder is empty, belongs to this user only, and is removed with its files") {
   std::filesystem::path path;
   {
     const auto folder = device::make_private_folder();

@@ -161,7 +161,7 @@ TEST_CASE("a request for a hand that holds contains its parameters, and a reques
   CHECK(requests[1] == json{{"command", "hand"}, {"holds", false}});
 }
 
-TEST_CASE("a board that is gone is Disconnected") {
+TEST_CASE("a lost board raises Disconnected") {
   FakeControlServer server([](const json&) { return "{\"ok\": true}\n"; });
   auto client = client_of(server);
   client.pause();

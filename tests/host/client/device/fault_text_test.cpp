@@ -30,7 +30,7 @@ TEST_CASE("the texts of supply_ripple and analog_supply state the tolerated devi
         std::string::npos);
 }
 
-TEST_CASE("the faults of the motors and of old samples name the figures that the firmware goes by") {
+TEST_CASE("the texts of the motor faults and of samples_stale contain the limits of the firmware") {
   CHECK(device::fault_text(Fault::over_current).cause.find("exceeded 150 % of its limit") != std::string::npos);
   CHECK(
       device::fault_text(Fault::samples_stale).cause ==
@@ -39,7 +39,7 @@ TEST_CASE("the faults of the motors and of old samples name the figures that the
   CHECK(device::fault_text(Fault::motor_hot).remedy.find("cool below 85 %.") != std::string::npos);
 }
 
-TEST_CASE("a self-test that failed names its items and their remedies, each once") {
+TEST_CASE("the text of a failed self-test contains its items and their remedies once") {
   using protocol::SelfTestItem;
   using protocol::SelfTestResult;
   protocol::SelfTestReport test{};

@@ -76,7 +76,7 @@ TEST_CASE("a virtual board that open_arm starts gets the parameters of its arm d
   CHECK(count_of(control, "stand_by") == 0);
 }
 
-TEST_CASE("the arm description is parsed once: the name does not need the file again") {
+TEST_CASE("the arm description is parsed once, and its name is available without the file") {
   const TemporaryDirectory directory;
   FakeUsbipServer usb;
   FakeControlServer control([](const json&) { return board_time_line(0.0); });

@@ -41,7 +41,7 @@ TEST_CASE("differences between a file and a device are named") {
   CHECK(differences[0].in_device == protocol::info(Parameter::force_limit_N).default_value);
 }
 
-TEST_CASE("names that this version does not know are returned, not refused") {
+TEST_CASE("unknown parameter names are returned and not refused") {
   const auto file =
       device::parse_parameters("[parameters]\nforce_limit_N = 2\nmagic_N = 1\n[motor]\nx = 1\n", "new.toml");
   CHECK(file.changes.size() == 1);

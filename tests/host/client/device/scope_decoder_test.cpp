@@ -242,7 +242,7 @@ TEST_CASE("a frame of changes with an impossible mask is refused") {
   CHECK(decoder.malformed_frames() == 1);
 }
 
-TEST_CASE("time that runs backwards is refused once, then followed") {
+TEST_CASE("a decreasing period count is refused once and then accepted") {
   auto decoder = decoder_for(few);
   REQUIRE(decoder.decode(full_frame(0, 1000)));
   CHECK_FALSE(decoder.decode(full_frame(1, 500)));

@@ -62,7 +62,7 @@ TEST_CASE("a session connects, shows pose and parameters, and gives its sign of 
   CHECK(session.status().poses_lost == 3);
 }
 
-TEST_CASE("the time of a board that was away goes on, also beyond the wrap of its counter") {
+TEST_CASE("the time of a board continues after a disconnection, even across the wrap of its counter") {
   constexpr std::int64_t wrap = std::int64_t{1} << 32;
   FakeUsbipServer server;
   server.bus_frame.time_periods = 0xFFFF'FFF0;
@@ -187,7 +187,7 @@ TEST_CASE("a refusal is kept until another transaction is accepted") {
   CHECK(eventually([&] { return !session.refusal(); }));
 }
 
-TEST_CASE("a session comes back by itself, selects its signals again, and repeats no command") {
+TEST_CASE("a session reconnects automatically, selects its signals again, and repeats no command") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   session.select_signals({protocol::Signal::force_N});
@@ -258,7 +258,7 @@ TEST_CASE("while another program drives, a session reports this, can stop the fo
   CHECK(problem().empty());
 }
 
-TEST_CASE("changes on their way when the connection breaks reach the device after all") {
+TEST_CASE("pending changes of a broken connection still reach the device") {
   FakeUsbipServer server;
   server.parameters[Parameter::sphere_radius_m] = 0.004f;
   server.transactions_to_break_at = 2;
@@ -383,7 +383,7 @@ TEST_CASE("the defaults replace changes that were asked for before") {
   CHECK(server.transactions() == 2);
 }
 
-TEST_CASE("a command for an arm that is not there does not reach the one that comes") {
+TEST_CASE("a command without an arm does not reach the next arm") {
   FakeUsbipServer server;
   std::atomic<bool> is_there = false;
   device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });

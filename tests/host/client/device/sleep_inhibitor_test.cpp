@@ -105,7 +105,7 @@ protocol::PoseReport pose_in(protocol::State state, std::uint32_t sequence, cons
 
 }  // namespace
 
-TEST_CASE("the inhibitor is acquired when it is wanted, once, and ends when it is not") {
+TEST_CASE("the inhibitor starts once when it is needed, and ends when it is not needed") {
   const FakeInhibit fake;
   device::SleepInhibitor inhibitor;
   inhibitor.prepare();
@@ -186,7 +186,7 @@ TEST_CASE("without systemd-inhibit, and if it refuses, nothing is wrong") {
   setenv("PATH", path_before.c_str(), 1);
 }
 
-TEST_CASE("the inhibitor ends with a killed program, though the program's forked child lives on") {
+TEST_CASE("the inhibitor ends with a killed program, even if a forked child of the program continues") {
   const FakeInhibit fake;
   int ends[2];
   REQUIRE(pipe(ends) == 0);

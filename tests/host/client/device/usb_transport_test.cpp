@@ -274,7 +274,7 @@ TEST_CASE("a reader that stops reading the scope loses the oldest transfers, and
   CHECK(count <= kept + 1);  // the newest transfer may have arrived during the first read
 }
 
-TEST_CASE("reports pass through hidapi as they are") {
+TEST_CASE("reports pass through hidapi unchanged") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   const auto transport = device::open_transport(arm.endpoint());
@@ -303,7 +303,7 @@ TEST_CASE("reports pass through hidapi as they are") {
              sizeof(protocol::BlackBoxRowsReport));
 }
 
-TEST_CASE("a feature report is read as far as it is wanted and received") {
+TEST_CASE("a feature report is limited to the requested and the received length") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   const auto transport = device::open_transport(arm.endpoint());
@@ -342,7 +342,7 @@ TEST_CASE("a refused request is distinguished from an unplugged cable by the dev
   }
 }
 
-TEST_CASE("an arm that is listed but that hidapi cannot open is denied, one that is not listed is gone") {
+TEST_CASE("an arm that hidapi lists but cannot open has no permission, and an unlisted arm is disconnected") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   arm.denies_hid = true;

@@ -34,7 +34,7 @@ protocol::PoseReport pose_number(std::uint32_t sequence) {
 
 }  // namespace
 
-TEST_CASE("a USB/IP server is asked for arms, and other devices are passed over") {
+TEST_CASE("arms at a USB/IP server are found, and other devices are ignored") {
   FakeUsbipServer server;
   const auto found = device::find_usbip_devices({"127.0.0.1", server.port()});
   REQUIRE(found.size() == 1);
@@ -178,7 +178,7 @@ TEST_CASE(
     const auto message = message_of<device::Error>([&] { arm->wait_until_written(60s); });
     CHECK(contains(message, "accepts no commands, although it sends poses"));
   }
-  SUBCASE("it is gone") {
+  SUBCASE("the device is disconnected") {
     server.hang_up();
     CHECK_THROWS_AS(arm->wait_until_written(60s), device::Disconnected);
   }
@@ -330,7 +330,7 @@ TEST_CASE("commands carry version and a token that is never 0") {
   CHECK(float{commands[300].test.amplitude} == 0.5f);  // a copy, because the member may be unaligned in the report
 }
 
-TEST_CASE("a sign of life goes out 200 control periods after the last command, and no sooner") {
+TEST_CASE("a heartbeat is sent 200 control periods after the last command, and not earlier") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   const auto commands_sent = [&] {  // commands arrive in order, so the count is complete once this command has arrived

@@ -253,7 +253,7 @@ TEST_CASE("a device object requests only as many bytes of each report as it uses
         std::vector<std::size_t>{protocol::parameters_report_size(protocol::parameter_count)});
 }
 
-TEST_CASE("a device that counts no frames of the bus is opened, and its frame is not known") {
+TEST_CASE("a device without bus frame counts can be opened, and bus_frame returns no value") {
   FakeUsbipServer server;
   server.bus_frame = {};
   const auto arm = device::Device::open(server.endpoint());

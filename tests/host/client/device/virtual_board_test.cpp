@@ -61,7 +61,7 @@ TEST_CASE("a virtual board receives SIGTERM, so that it can exit normally") {
   CHECK(script.file("end") == "asked");
 }
 
-TEST_CASE("a virtual board that does not end when it is asked to is ended") {
+TEST_CASE("a virtual board that ignores SIGTERM is killed") {
   const Script script(std::string("trap '' TERM\n") + run_until_reported);
   pid_t process = 0;
   {

@@ -11,14 +11,14 @@ namespace {
 constexpr std::int64_t wrap = std::int64_t{1} << 32;
 }
 
-TEST_CASE("the first value of a counter counts as it is, and before it any value does") {
+TEST_CASE("the first value of a counter counts unchanged, and nearest accepts any value before it") {
   WideCounter counter;
   CHECK(counter.nearest(0xFFFF'FFF0) == wrap - 16);
   CHECK(counter.nearest(5) == 5);
   CHECK(counter.note(0xFFFF'FFF0) == wrap - 16);
 }
 
-TEST_CASE("a counter goes on where its 32 bits wrap, as often as they do") {
+TEST_CASE("the count continues each time the 32-bit counter wraps") {
   WideCounter counter;
   std::int64_t expected = 0xC000'0000;
   for (int i = 0; i < 20; ++i, expected += 0x3000'0001) {
@@ -46,7 +46,7 @@ TEST_CASE("WideCounter returns a negative count for a counter value before the f
   CHECK(WideCounter::at_or_after(4, 4) == 4);
 }
 
-TEST_CASE("a board that was away goes on with its count, and one that started again with a new one") {
+TEST_CASE("the count of a board continues after a disconnection, and starts again after a restart of the board") {
   WideCounter counter;
   counter.note(1000);
   SUBCASE("it goes on") {

@@ -144,7 +144,7 @@ TEST_CASE("the board name of the installed firmware can select the image") {
     CHECK(written.image.identity->board_name() == "other");
     return;
   }
-  SUBCASE("which is missing, so that the board goes back to its firmware") {
+  SUBCASE("the image is missing, so that the board returns to its firmware") {
     fake.did.clear();
     CHECK_THROWS_AS(write_image(loader, good_image(),
                                 {.image_for = [](const auto&) -> std::optional<Image> { throw NoImage("missing"); }}),

@@ -137,7 +137,7 @@ TEST_CASE("a refused proposal reports the refusal text of the device") {
   CHECK(guide.refusal() == "The device refused it.");
 }
 
-TEST_CASE("cancel ends a pulse at once") {
+TEST_CASE("cancel ends a pulse immediately") {
   FakeArm arm;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   arm.run(guide, false);
@@ -180,7 +180,7 @@ TEST_CASE("a disconnected device ends the guide with a sentence, and the trial p
   CHECK(arm.transactions[1][0].second == protocol::default_parameters()[Parameter::current_proportional_gain_V_per_A]);
 }
 
-TEST_CASE("every guide survives a device that goes away at any moment") {
+TEST_CASE("every guide tolerates a disconnection at any time") {
   for (const int after_ms : {0, 1, 50, 230, 300, 420, 700}) {
     FakeArm arm;
     Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
@@ -208,7 +208,7 @@ TEST_CASE("a fault ends the guide with its cause and remedy") {
   CHECK(guide.outcome().find(device::fault_text(protocol::Fault::supply_low).remedy) != std::string::npos);
 }
 
-TEST_CASE("a scope with gaps is not believed") {
+TEST_CASE("a guide fails if scope samples were lost") {
   FakeArm arm;
   arm.loses_scope = true;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});

@@ -64,7 +64,7 @@ class Environment {
 
 }  // namespace
 
-TEST_CASE("only its user can connect to a Unix socket, and it goes with its listener") {
+TEST_CASE("only its user can connect to a Unix socket, and the socket is removed with its listener") {
   const TemporaryDirectory directory;
   const fs::path path = directory / "socket";
   const mode_t mask = ::umask(0);

@@ -208,7 +208,7 @@ TEST_CASE("a program that was started later does not retain ownership of the fil
   waitpid(process, nullptr, 0);
 }
 
-TEST_CASE("on a file system without locks there is a warning, and the board goes on") {
+TEST_CASE("a file system without locks causes a warning and no error") {
   const TemporaryDirectory directory;
   OwnedFile owned(directory / "file", [](int, int) {
     errno = ENOLCK;

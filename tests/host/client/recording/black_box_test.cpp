@@ -85,7 +85,7 @@ TEST_CASE("missing rows of a black box count as lost, and rows with a smaller di
   CHECK(of_black_box(head(), kept, about()).lost() == 2);
 }
 
-TEST_CASE("a black box goes on in time where the board's counter wraps") {
+TEST_CASE("the time of a black box continues across the wrap of the board counter") {
   constexpr std::int64_t wrap = std::int64_t{1} << 32;
   auto kept = rows();
   for (auto& row : kept) row.time_periods -= 2047;
@@ -141,7 +141,7 @@ TEST_CASE("a file of an earlier version, or one that lies, has a sample in each 
   }
 }
 
-TEST_CASE("an existing file is replaced only where that was asked for") {
+TEST_CASE("an existing file is replaced only on request") {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.csv") << "precious";
   CHECK(contains(message_of<device::Error>([&] { check_can_be_created(directory / "a.csv"); }), "exists"));

@@ -50,7 +50,7 @@ void check_is_plain(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("texts of a recording are plain once it is read") {
+TEST_CASE("the texts of a recording contain no control characters after reading") {
   const TemporaryDirectory directory;
   save(named(hostile), directory / "a.h5");
   check_is_plain(directory / "a.h5");

@@ -120,7 +120,7 @@ std::string error_of(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("a recording comes back as it was written") {
+TEST_CASE("a recording is read back unchanged") {
   const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
     CAPTURE(name);
@@ -185,7 +185,7 @@ TEST_CASE("both file formats preserve the simulated quantities of a recording") 
   CHECK(csv.find("\ntime_s,force_N,position_x_m,duty_1,hand_force_z_N,true_current_2_A\n") != std::string::npos);
 }
 
-TEST_CASE("a recording that cannot be saved leaves the one before as it is") {
+TEST_CASE("a recording that cannot be saved does not change the previous file") {
   const TemporaryDirectory directory;
   save(simulated(), directory / "a.csv");
   auto other = simulated();
@@ -293,7 +293,7 @@ TEST_CASE("a board that was restarted ends the recording") {
   CHECK(recording.marks[0].period == recording.periods.front());
 }
 
-TEST_CASE("an arm is known by its parameters if it is the default one") {
+TEST_CASE("an arm with the default parameters has the default name") {
   device::Information device{.firmware_version = "0.1.0", .protocol_version = 1, .serial_number = "", .report = {}};
   auto parameters = protocol::default_parameters();
   parameters[Parameter::box_minimum_x_m] = -0.01f;  // a value of the user, not of the arm
@@ -474,7 +474,7 @@ TEST_CASE("numbers of a CSV that do not fit are left out and named, or as if the
   CHECK(recording.periods == std::vector<std::int64_t>{5000, 4294967295, 20'000'000'000'000});
 }
 
-TEST_CASE("a recording goes on in time where the board's counter wraps, in either format") {
+TEST_CASE("the time of a recording continues across the wrap of the board counter, in both formats") {
   const TemporaryDirectory directory;
   constexpr std::int64_t wrap = std::int64_t{1} << 32;
   for (const char* name : {"a.h5", "a.csv"}) {
@@ -499,7 +499,7 @@ TEST_CASE("a recording goes on in time where the board's counter wraps, in eithe
   }
 }
 
-TEST_CASE("a recording of an earlier version, whose periods fall where the counter wraps, goes on in time") {
+TEST_CASE("the time of an earlier recording version continues where its periods fall at the counter wrap") {
   const TemporaryDirectory directory;
   constexpr std::int64_t wrap = std::int64_t{1} << 32;
   SUBCASE("CSV") {

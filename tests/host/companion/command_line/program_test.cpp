@@ -111,7 +111,7 @@ TEST_CASE("a recording whose last samples do not arrive fails with a message") {
   CHECK(contains(complaint, said));
 }
 
-TEST_CASE("with several arms, a command without a serial number fails and asks for it") {
+TEST_CASE("with several arms, a command without a serial number fails and requests the number") {
   FakeUsb usb;
   usb.add_arm("0011");
   usb.add_arm("0022");

@@ -81,7 +81,7 @@ TEST_CASE("a slider that is dragged makes one transaction a frame and one undo s
   CHECK_FALSE(editor.can_redo());
 }
 
-TEST_CASE("a drag that comes back to its start is no step") {
+TEST_CASE("a drag that returns to its start is not an undo step") {
   ParameterEditor editor;
   AgreeableDevice device;
   device.exchange(editor);

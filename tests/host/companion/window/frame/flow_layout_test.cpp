@@ -6,7 +6,7 @@
 
 using namespace inkwell::window;
 
-TEST_CASE("items stand in one row where they fit, and wrap into whole rows where they do not") {
+TEST_CASE("items are in one row if they fit, and otherwise wrap into complete rows") {
   const std::vector<float> widths{200, 100, 100, 100};
   for (const FlowPosition& position : flow(widths, 530, 900, 10)) CHECK(position.row == 0);
   CHECK(flow(widths, 530, 900, 10).back().x == 430);

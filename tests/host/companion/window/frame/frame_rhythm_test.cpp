@@ -29,7 +29,7 @@ TEST_CASE("motion is drawn at the full rate, resting signals seldom, the same pi
   CHECK(frames_drawn({.input = true}) == 0);  // mouse input without a visible change
 }
 
-TEST_CASE("input wakes the window at once, and it stays awake for a moment") {
+TEST_CASE("input wakes the window immediately, and the window stays awake for a short time") {
   FrameRhythm rhythm;
   rhythm.record_evidence({}, 10.0);
   CHECK_FALSE(rhythm.is_lively(10.01));
