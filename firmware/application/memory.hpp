@@ -6,16 +6,19 @@
 /// Places an object in the core-coupled memory. The object must be zero-initialized or have a constructor.
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
-/// Places an object in main memory that start-up does not clear. The object must not have a constructor. The contents
-/// are undefined after power-on.
+/// Places an object in SRAM2, which DMA can access. The object must be zero-initialized or have a constructor.
+#define INKWELL_SRAM2 [[gnu::section(".bss.sram2")]]
+
+/// Places an object in core-coupled memory that start-up does not clear. The object must not have a constructor. The
+/// contents are undefined after power-on.
 #define INKWELL_KEPT_OVER_RESET [[gnu::section(".bss.kept")]]
 
 extern "C" {
 extern std::uint32_t stack_bottom[], stack_top[];
-extern std::uint32_t core_coupled_end[], ram_begin[], ram_end[];
+extern std::uint32_t core_coupled_end[], ram_begin[], ram_end[], sram2_begin[], sram2_end[];
 extern std::uint32_t data_begin[], data_end[], zero_begin[], zero_end[];
 extern std::uint32_t core_coupled_data_begin[], core_coupled_data_end[], core_coupled_zero_begin[],
-    core_coupled_zero_end[];
+    core_coupled_zero_end[], sram2_zero_begin[], sram2_zero_end[];
 extern std::uint32_t interrupt_vectors[], interrupt_text_begin[], interrupt_text_end[], interrupt_tables_begin[],
     interrupt_tables_end[];
 extern const std::uint32_t copied_begin[], copied_end[], code_begin[], image_check[];

@@ -34,12 +34,13 @@ INKWELL_CORE_COUPLED control::Controller controller{
     {board::supply_minimum_V, board::supply_maximum_V, board::duty_limit, board::facts.current_measurable_A(),
      board::facts.bridge_dead_time_part()},
     first_period};
-INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory, first_period};
+INKWELL_SRAM2 link::Link host_link{board::servo_cycles, scope_frames, black_box_memory, first_period};
 
-// These objects are in main memory, because they are large or need DMA.
-Part<drivers::AnalogInputs> analog_inputs;
+INKWELL_SRAM2 Part<drivers::AnalogInputs> analog_inputs;  // DMA cannot access the core-coupled memory
 link::ScopeFrames scope_frames;
 INKWELL_KEPT_OVER_RESET BlackBoxMemory black_box_memory;
+
+bool started_by_boot_loader;
 
 Part<drivers::LogicSupply> logic_supply;
 Part<drivers::StatusLed> status_led;

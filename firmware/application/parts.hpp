@@ -47,6 +47,10 @@ extern Part<drivers::ParameterFlash> parameter_flash;
 
 extern link::Link host_link;
 
+/// True if the boot pins selected the boot loader of the chip, and the boot loader started the firmware. Start-up sets
+/// this variable.
+extern bool started_by_boot_loader;
+
 /// Initial counts of control periods and bus frames. A test image starts just before the counters wrap
 /// (tests/target/near_wrap).
 #ifndef INKWELL_FIRST_PERIOD

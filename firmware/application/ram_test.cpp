@@ -27,6 +27,7 @@ bool ram_retains_pattern() {
   is_intact &= link::retains_pattern(between(stack_bottom, stack - words_of_callees), std::span(room));
   is_intact &= link::retains_pattern(between(stack_top, core_coupled_end), std::span(room));
   is_intact &= link::retains_pattern(between(ram_begin, ram_end), std::span(room));
+  is_intact &= link::retains_pattern(between(sram2_begin, sram2_end), std::span(room));
   return is_intact;
 }
 

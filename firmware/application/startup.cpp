@@ -4,10 +4,12 @@
 
 #include "firmware/drivers/boot_loader.hpp"
 #include "firmware/drivers/memory_protection.hpp"
+#include "firmware/drivers/system.hpp"
 #include "firmware/registers/peripherals.hpp"
 
 #include "firmware/application/handlers.hpp"
 #include "firmware/application/memory.hpp"
+#include "firmware/application/parts.hpp"
 #include "firmware/application/vectors.hpp"
 
 namespace inkwell::application {
@@ -15,6 +17,11 @@ namespace {
 
 void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t* end) {
   std::copy_n(image, end - begin, begin);
+}
+
+/// Returns the address in SRAM1 of a word of interrupt code, whose own address applies after the remapping.
+std::uint32_t* in_sram1(const std::uint32_t* remapped) {
+  return ram_begin + reinterpret_cast<std::uintptr_t>(remapped) / sizeof(std::uint32_t);
 }
 
 }  // namespace
@@ -44,14 +51,16 @@ extern "C" [[noreturn, gnu::used]] void start() {
   FPU_CPACR::CPACR::modify(FPU_CPACR::CPACR::CP(full_access_to_both));
   asm volatile("dsb\n isb" ::: "memory");
 
-  copy(interrupt_text_image, interrupt_text_begin, interrupt_text_end);
+  copy(interrupt_text_image, in_sram1(interrupt_text_begin), in_sram1(interrupt_text_end));
   copy(interrupt_tables_image, interrupt_tables_begin, interrupt_tables_end);
   copy(data_image, data_begin, data_end);
   copy(core_coupled_data_image, core_coupled_data_begin, core_coupled_data_end);
   std::fill(zero_begin, zero_end, 0u);
   std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
+  std::fill(sram2_zero_begin, sram2_zero_end, 0u);
+  std::memcpy(in_sram1(interrupt_vectors), &vectors, sizeof vectors);
+  started_by_boot_loader = drivers::read_boot_mode_and_remap_sram1() != 0;
   // From here on, the processor reads the vector table from RAM.
-  std::memcpy(interrupt_vectors, &vectors, sizeof vectors);
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");
   drivers::protect_memory();

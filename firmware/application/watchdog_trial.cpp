@@ -38,7 +38,7 @@ void wait_for_reset() {
 
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
   // While BOOT0 is high, a watchdog reset starts the boot loader instead of the firmware.
-  if (cause.power_on() && !drivers::started_by_boot_loader()) {
+  if (cause.power_on() && !started_by_boot_loader) {
     kept_course.store({cause.flags, Outcome::open});
     wait_for_reset();
     kept_course.store({cause.flags, Outcome::none});

@@ -169,7 +169,7 @@ INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
 }
 
 INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
-  if (slow_stopped_) return set_up_slow();
+  if (!slow_runs_) return set_up_slow();
   if (!DMA2::LISR::TCIF0::is_set()) {
     // After a late control interrupt the sequence may be incomplete. A restart in the middle of a sequence would shift
     // all later results by one position. A converter overrun or a transfer error stops the sequence permanently.
@@ -187,12 +187,12 @@ INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
 INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
   ADC1::CR2::write(adc1_armed & ~ADC1::CR2::DMA::mask);
   DMA2::S0CR::write(0);
-  slow_stopped_ = true;
+  slow_runs_ = false;
 }
 
 INKWELL_INTERRUPT void AnalogInputs::set_up_slow() {
   ++slow_age_periods_;
-  slow_stopped_ = false;
+  slow_runs_ = true;
   set_up_memory_access(slow_.data());
   // An unread result would cause an overrun at the next result.
   ADC1::SR::write(~(ADC1::SR::OVR::mask | ADC1::SR::EOC::mask));

@@ -74,7 +74,7 @@ class AnalogInputs {
   /// in main RAM.
   std::array<volatile std::uint16_t, 5> slow_{};
   std::uint32_t slow_age_periods_ = 0;
-  bool slow_stopped_ = true;  ///< stopped, at start-up or after an error; set up in the next period
+  bool slow_runs_ = false;  ///< false at start-up and after an error; set up in the next period
 };
 
 }  // namespace inkwell::drivers

@@ -26,14 +26,19 @@ inline ResetCause take_reset_cause() {
   return cause;
 }
 
-/// Returns true if the boot pins selected the chip's boot loader and the boot loader started the firmware. After a
-/// reset, SYSCFG_MEMRMP contains the selection of the boot pins (RM0090).
-inline bool started_by_boot_loader() {
+/// Maps SRAM1 to address 0 until the next reset (RM0090, SYSCFG_MEMRMP and "Memory map"). Returns the previous value of
+/// MEM_MODE. After a reset this value is the selection of the boot pins: 0 for the flash, 1 for the boot loader.
+inline std::uint32_t read_boot_mode_and_remap_sram1() {
+  using registers::SYSCFG;
   registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(1));
   static_cast<void>(registers::RCC::APB2ENR::read());  // erratum "Delay after an RCC peripheral clock enabling"
-  const bool is_so = registers::SYSCFG::MEMRMP::MEM_MODE::read() != 0;
+  const std::uint32_t boot_mode = SYSCFG::MEMRMP::MEM_MODE::read();
+  constexpr std::uint32_t embedded_sram = 0b11;
+  SYSCFG::MEMRMP::write(SYSCFG::MEMRMP::MEM_MODE(embedded_sram));
+  static_cast<void>(SYSCFG::MEMRMP::read());  // waits until the write is complete
+  asm volatile("dsb\n isb" ::: "memory");
   registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(0));
-  return is_so;
+  return boot_mode;
 }
 
 [[noreturn]] inline void reset_chip() {

@@ -2,8 +2,7 @@
 //
 // Each member has one producer and one consumer and never blocks the interrupt.
 //
-// The link needs about 13 KB of core-coupled memory, mostly for samples. Scope frames and black-box rows are in the
-// main memory, because only the main loop accesses them.
+// The link needs about 13 KB, mostly for samples. Only the main loop accesses scope frames and black-box rows.
 #pragma once
 
 #include <cstdint>

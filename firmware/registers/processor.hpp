@@ -45,6 +45,7 @@ struct MemoryProtectionUnit {
   struct RASR : Register<base + 0x10> {
     using ENABLE = Field<RASR, 0, 1>;
     using SIZE = Field<RASR, 1, 5>;
+    using SRD = Field<RASR, 8, 8>;
     using C = Field<RASR, 17, 1>;
     using S = Field<RASR, 18, 1>;
     using AP = Field<RASR, 24, 3>;

@@ -35,7 +35,8 @@ def section_bytes(elf: str) -> dict[str, tuple[int, int]]:
 
 
 # Scarce memory regions of the linker script, with their names in the output.
-REGIONS = {"INTERRUPT": "interrupt code", "TABLES": "interrupt tables", "RAM": "RAM", "CORE_COUPLED": "core-coupled RAM"}
+REGIONS = {"INTERRUPT": "interrupt code", "TABLES": "interrupt tables", "RAM": "RAM", "SRAM2": "SRAM2",
+           "CORE_COUPLED": "core-coupled RAM"}
 LINKER_SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "boards/facts/stm32f405.ld"
 
 

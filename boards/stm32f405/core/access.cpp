@@ -25,10 +25,11 @@ std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access acces
       !protection.allows(address, access == Access::store, fetch, role.privileged))
     return fetch ? Outcome::execute_never : Outcome::protected_data;
   const bool is_core_coupled = address - ccm_base < ccm_bytes;
+  const bool is_system = address - system_base < system_bytes ||
+                         (machine_.memory.at_zero() == MemoryAtZero::system && address < system_bytes);
   const bool answers = (fetch ? machine_.memory.at(address, 1) != nullptr && !is_core_coupled
                               : machine_.memory.at(address, 1) != nullptr || windows_.answer(address)) &&
-                       (core_coupled_on_ || !is_core_coupled) &&
-                       (access != Access::store || address - system_base >= system_bytes);
+                       (core_coupled_on_ || !is_core_coupled) && (access != Access::store || !is_system);
   if (answers) return {};
   return fetch ? Outcome::instruction_fault : Outcome::data_fault;
 }
@@ -42,20 +43,26 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
     return true;
   }
   // An interrupt cannot abort a read that has started.
-  if (access == Access::load && flash_is_busy_ && is_in_flash(address)) flash_port_.hold_up();
+  if (access == Access::load && flash_is_busy_ && machine_.memory.is_in_flash(address)) flash_port_.hold_up();
+  // The engine notices changes of translated code only at the address where the code runs.
+  if (access == Access::store && plain_stores_.holds_code_at_other_address(address)) {
+    forget_code_later(*machine_.memory.other_address(address), bytes);
+    end_slice();
+  }
   return false;
 }
 
 int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
   const auto& protection = machine_.memory_protection;
   if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
+  if (machine_.memory.at_zero() == MemoryAtZero::sram1 && plain_stores_.holds_code_at_other_address(page)) return -1;
   // After a negative result, the engine checks rights and alignment at each access.
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;
   int rights = 0;
   // While the flash is busy, its pages have no read right. The first read of a busy flash therefore calls refuses(),
   // and refuses() makes the core wait.
-  const bool waits = flash_is_busy_ && is_in_flash(page);
+  const bool waits = flash_is_busy_ && machine_.memory.is_in_flash(page);
   if (!waits && !refusal_of(page, Access::load, role)) rights |= may_read;
   if (!refusal_of(page, Access::store, role)) rights |= may_write;
   if (!refusal_of(page, Access::fetch, role)) rights |= may_execute;

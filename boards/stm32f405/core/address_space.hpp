@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
+
+#include "boards/stm32f405/core/memory_map.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -22,6 +25,17 @@ class AddressSpace {
   std::uint8_t* sram() { return sram_.data(); }
   std::uint8_t* ccm() { return ccm_.data(); }
   std::uint8_t* system() { return system_.data(); }
+
+  /// Selects the memory that is also mapped at address 0.
+  void map_at_zero(MemoryAtZero memory) { at_zero_ = memory; }
+  MemoryAtZero at_zero() const { return at_zero_; }
+  /// Returns the bytes of the memory at address 0.
+  Bytes bytes_at_zero() const;
+  /// Returns the other address of the byte at `address`, if the byte is mapped twice.
+  std::optional<std::uint32_t> other_address(std::uint32_t address) const;
+  bool is_in_flash(std::uint32_t address) const {
+    return address - flash_base < flash_bytes || (at_zero_ == MemoryAtZero::flash && address < flash_bytes);
+  }
 
   /// Returns a pointer to the memory at `address`. Returns nullptr if no memory contains all `bytes` bytes.
   std::uint8_t* at(std::uint32_t address, std::uint32_t bytes);
@@ -43,6 +57,7 @@ class AddressSpace {
 
  private:
   Bytes flash_, sram_, ccm_, system_;
+  MemoryAtZero at_zero_ = MemoryAtZero::flash;
 };
 
 }  // namespace inkwell::virtual_board

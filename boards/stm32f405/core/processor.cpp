@@ -71,9 +71,33 @@ void Processor::map_memories() {
     check(uc_mmio_map(engine_, window.base, window.bytes, window.read, windows_.bus, window.write, windows_.bus),
           "map the registers");
   map(flash_base, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
-  map(0, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
   map(system_base, system_bytes, UC_PROT_ALL, memory.system());
+  map_memory_at_zero();
   map_holes();
+}
+
+void Processor::map_memory_at_zero() {
+  const auto bytes = machine_.memory.bytes_at_zero();
+  const bool is_flash = machine_.memory.at_zero() == MemoryAtZero::flash;
+  check(uc_mem_map_ptr(engine_, 0, bytes.size(), is_flash ? UC_PROT_READ | UC_PROT_EXEC : UC_PROT_ALL, bytes.data()),
+        "map a memory at address 0");
+  if (bytes.size() < flash_bytes) map_hole(static_cast<std::uint32_t>(bytes.size()), flash_bytes);
+}
+
+void Processor::take_new_memory_at_zero() {
+  const auto memory = *std::exchange(new_memory_at_zero_, std::nullopt);
+  if (memory == machine_.memory.at_zero()) return;
+  const std::size_t bytes = machine_.memory.bytes_at_zero().size();
+  uc_ctl_remove_cache(engine_, std::uint64_t{0}, std::uint64_t{bytes});
+  check(uc_mem_unmap(engine_, 0, bytes), "unmap the memory at address 0");
+  if (bytes < flash_bytes) check(uc_mem_unmap(engine_, bytes, flash_bytes - bytes), "unmap the memory at address 0");
+  machine_.memory.map_at_zero(memory);
+  map_memory_at_zero();
+  plain_stores_.forget_code_at_zero();
+  timing_.map_at_zero(memory == MemoryAtZero::flash   ? CodeMap::AtZero::flash
+                      : memory == MemoryAtZero::sram1 ? CodeMap::AtZero::sram
+                                                      : CodeMap::AtZero::other);
+  rights_changed_ = true;
 }
 
 // At an access to an unmapped address, the engine does not report the instruction. All remaining address ranges are
@@ -90,16 +114,20 @@ void Processor::map_holes() {
   std::sort(taken.begin(), taken.end());
   std::uint64_t at = 0;
   for (const auto& [first, end] : taken) {
-    if (first > at)
-      check(uc_mmio_map(
-                engine_, at, first - at, [](uc_engine*, std::uint64_t, unsigned, void*) { return std::uint64_t{0}; },
-                nullptr, [](uc_engine*, std::uint64_t, unsigned, std::uint64_t, void*) {}, nullptr),
-            "map unused addresses");
+    if (first > at) map_hole(at, first);
     at = end;
   }
 }
 
+void Processor::map_hole(std::uint64_t first, std::uint64_t end) {
+  check(uc_mmio_map(
+            engine_, first, end - first, [](uc_engine*, std::uint64_t, unsigned, void*) { return std::uint64_t{0}; },
+            nullptr, [](uc_engine*, std::uint64_t, unsigned, std::uint64_t, void*) {}, nullptr),
+        "map unused addresses");
+}
+
 void Processor::reset(std::uint32_t vector_table) {
+  if (new_memory_at_zero_) take_new_memory_at_zero();
   for (int id = UC_ARM_REG_R0; id <= UC_ARM_REG_R12; ++id) write(id, 0);
   current_exception_ = exception_none;
   write(UC_ARM_REG_CONTROL, 0);
@@ -132,11 +160,15 @@ void Processor::reset(std::uint32_t vector_table) {
 
 void Processor::forget_code(std::uint32_t address, std::uint32_t bytes) {
   uc_ctl_remove_cache(engine_, std::uint64_t{address}, std::uint64_t{address} + bytes);
-  if (address < flash_base || address >= flash_base + flash_bytes) return;
-  const std::uint64_t alias = address - flash_base;
-  uc_ctl_remove_cache(engine_, alias, alias + bytes);
+  if (const auto other = machine_.memory.other_address(address)) {
+    const std::uint64_t first = *other;
+    const std::uint64_t end = first < flash_base ? machine_.memory.bytes_at_zero().size() : first + bytes;
+    uc_ctl_remove_cache(engine_, first, std::min(first + bytes, end));
+  }
+  // The engine fetches from the range without the checks of EngineCalls, and caches the address with all rights.
+  forget_pages();
   // All block prices are discarded, because a block may start before the changed range and overlap the range.
-  timing_.forget();
+  if (machine_.memory.is_in_flash(address)) timing_.forget();
 }
 
 std::uint64_t Processor::cycles_until(Ticks when) const {
@@ -154,6 +186,7 @@ Masks Processor::masks() const {
 Outcome Processor::run(std::uint64_t cycles) {
   stop_cycle_ = cycles_ + cycles;
   if (guard_bytes_ != 0) guard_float_instructions();
+  if (new_memory_at_zero_) take_new_memory_at_zero();
   for (const auto& [address, bytes] : std::exchange(to_forget_, {})) forget_code(address, bytes);
   take_new_rights();
   stopped_ = false;
@@ -169,6 +202,7 @@ Outcome Processor::run(std::uint64_t cycles) {
     const Use use(*this);
     error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
   }
+  if (new_memory_at_zero_) take_new_memory_at_zero();
   // If instruction hooks exist, Unicorn 2.0.1 does not update the program counter when it stops before a block.
   program_counter_ = stopped_before_.value_or(read(UC_ARM_REG_PC) & ~1u);
   if (!stopped_ && block_ != nullptr) cycles_ = instruction_end_;
@@ -189,7 +223,8 @@ void Processor::finish_flash_stores() {
 }
 
 [[gnu::noinline]] const BlockPrice& Processor::price_block(std::uint32_t address, std::uint32_t bytes) {
-  if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes, *this);
+  const bool is_in_sram1 = machine_.memory.at_zero() == MemoryAtZero::sram1 && address < sram1_bytes;
+  if (is_in_sram1 || address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes, *this);
   return timing_.block(address, {machine_.memory.at(address, bytes), bytes});
 }
 
@@ -225,7 +260,7 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   } else {
     if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop_before(start);
   }
-  if (self.flash_is_busy_ && is_in_flash(start)) return self.stop_before(start);
+  if (self.flash_is_busy_ && self.machine_.memory.is_in_flash(start)) return self.stop_before(start);
   if (self.refuses_float_ && self.has_unguarded_float(start, size)) {
     self.guard_address_ = start;
     self.guard_bytes_ = size;

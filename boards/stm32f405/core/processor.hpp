@@ -88,9 +88,11 @@ class Processor final : public ClockUser, private EngineCalls {
     rights_changed();
   }
   /// Returns true if the next instruction is in the busy flash.
-  bool waits_for_flash() const { return flash_is_busy_ && is_in_flash(program_counter_); }
-  static constexpr bool is_in_flash(std::uint32_t address) {
-    return address < flash_bytes || address - flash_base < flash_bytes;
+  bool waits_for_flash() const { return flash_is_busy_ && machine_.memory.is_in_flash(program_counter_); }
+  /// Maps another memory at address 0. The change takes effect in the next slice.
+  void map_at_zero(MemoryAtZero memory) {
+    new_memory_at_zero_ = memory;
+    end_slice();
   }
   /// Call this function after a change of instructions in memory.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
@@ -228,7 +230,10 @@ class Processor final : public ClockUser, private EngineCalls {
   int rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) override;
   bool may_fetch(std::uint32_t address) const override { return !refusal_of(address, Access::fetch, role()); }
   bool runs_above_faults() const override;
-  bool takes_plain_stores(std::uint32_t page) const override { return plain_stores_.plain(page); }
+  bool takes_plain_stores(std::uint32_t page) const override {
+    const bool is_at_zero = page < sram1_bytes;
+    return (!is_at_zero || machine_.memory.at_zero() == MemoryAtZero::sram1) && plain_stores_.plain(page);
+  }
   bool is_device(std::uint32_t address, Role role) const override;
   void misaligned(std::uint32_t address) override;
   bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
@@ -261,7 +266,10 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Returns the additional cycles of a divide instruction compared with the shortest divide.
   unsigned divide_wait(const BlockPrice::Divide& divide) const;
   void map_memories();
+  void map_memory_at_zero();
+  void take_new_memory_at_zero();
   void map_holes();
+  void map_hole(std::uint64_t first, std::uint64_t end);
   void stop() {
     stopped_ = true;
     uc_emu_stop(engine_);
@@ -297,6 +305,7 @@ class Processor final : public ClockUser, private EngineCalls {
   std::size_t next_request_ = 0, next_divide_ = 0, next_read_ = 0;  ///< within the block
   bool block_is_plain_ = false;
   PlainStores plain_stores_;
+  std::optional<MemoryAtZero> new_memory_at_zero_;
   /// Unicorn writes each store directly to the flash memory. After the slice, the contents are replaced by the
   /// programmed values.
   struct FlashStore {

@@ -37,6 +37,9 @@ namespace inkwell::virtual_board {
   RULE(narrow_core_write, "", "ARMv7-M, B3.1.1 and B3.2", "A core register is written with fewer than 32 bits",        \
        "the effect is undefined; in the model the other bits do not change",                                           \
        "write whole words; only SHPR, CFSR, NVIC_IPR and the ITM stimulus ports accept fewer bits")                    \
+  RULE(core_reset, "AIRCR", "PM0214, Application interrupt and reset control register", "VECTRESET is set",            \
+       "only the core is reset: SYSCFG_MEMRMP and all peripherals keep their state; the model ignores the bit",        \
+       "write VECTRESET as 0 and set SYSRESETREQ")                                                                     \
   RULE(flash_wait_states, "FLASH_ACR", "RM0090, Relation between CPU clock frequency and Flash memory read time",      \
        "LATENCY is too small for HCLK",                                                                                \
        "flash reads return wrong data; in the model the next instruction from flash is undefined",                     \

@@ -125,6 +125,7 @@ void SystemControl::write_reset_control(std::uint32_t value) {
   constexpr std::uint32_t key = 0x05FA;
   if (scb.aircr.vectkey.of(value) != key) return;
   machine_.nvic.set_priority_group(scb.aircr.prigroup.of(value));
+  if (scb.aircr.vectreset.in(value)) machine_.violations.violate(Rule::core_reset);
   if (scb.aircr.sysresetreq.in(value)) machine_.request_reset(ResetCause::software);
 }
 

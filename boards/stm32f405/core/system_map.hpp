@@ -65,8 +65,8 @@ struct SystemControlRegisters {
     Field tbloff{"TBLOFF", 7, 25};
   } vtor{{"VTOR", 0x08}};
   struct : Register {
-    Field sysresetreq{"SYSRESETREQ", 2, 1, Access::w}, prigroup{"PRIGROUP", 8, 3},
-        vectkey{"VECTKEY", 16, 16, Access::w};
+    Field vectreset{"VECTRESET", 0, 1, Access::w}, sysresetreq{"SYSRESETREQ", 2, 1, Access::w},
+        prigroup{"PRIGROUP", 8, 3}, vectkey{"VECTKEY", 16, 16, Access::w};
   } aircr{{"AIRCR", 0x0C, 0xFA05'0000}};
   struct : Register {
     Field sleeponexit{"SLEEPONEXIT", 1}, sleepdeep{"SLEEPDEEP", 2}, sevonpend{"SEVONPEND", 4};

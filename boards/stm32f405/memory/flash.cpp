@@ -175,8 +175,8 @@ void FlashController::write_options(std::uint32_t value) {
 
 std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std::uint32_t value, unsigned size) {
   const std::uint8_t* memory = machine_.memory.at(address, size);
+  if (memory == nullptr || !machine_.memory.is_in_flash(address)) return {};
   const std::uint32_t offset = address < flash_bytes ? address : address - flash_base;
-  if (memory == nullptr || offset >= flash_bytes) return {};
   hold_up();
   std::uint32_t content = 0;
   std::memcpy(&content, memory, size);

@@ -96,9 +96,27 @@ std::uint32_t Exti::Syscfg::read_word(std::uint32_t offset) {
   return 0;
 }
 
+void Exti::Syscfg::reset() {
+  words_ = {};
+  exti_.processor_.map_at_zero(MemoryAtZero::flash);
+}
+
+void Exti::Syscfg::show_boot_loader_chosen() {
+  constexpr auto memory = MemoryAtZero::system;
+  words_[syscfg_registers.memrmp / 4] = syscfg_registers.memrmp.mem_mode.with(static_cast<std::uint32_t>(memory));
+  exti_.processor_.map_at_zero(memory);
+}
+
+void Exti::Syscfg::map_at_zero(std::uint32_t mode) {
+  constexpr std::uint32_t external_memory = 2;
+  if (mode == external_memory)
+    exti_.machine_.log.note("SYSCFG memory remap to the FSMC,", syscfg_registers.memrmp, true, mode);
+  else
+    exti_.processor_.map_at_zero(static_cast<MemoryAtZero>(mode));
+}
+
 void Exti::Syscfg::write_word(std::uint32_t offset, std::uint32_t value) {
-  if (offset == syscfg_registers.memrmp && syscfg_registers.memrmp.mem_mode.in(value))
-    exti_.machine_.log.note("SYSCFG memory remap,", offset, true, value);
+  if (offset == syscfg_registers.memrmp) map_at_zero(syscfg_registers.memrmp.mem_mode.of(value));
   const auto store = [&](std::uint32_t mask) { words_[offset / 4] = value & mask; };
   switch (offset) {
     case syscfg_registers.memrmp: return store(writable(syscfg_registers.memrmp));

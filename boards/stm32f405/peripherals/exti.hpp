@@ -69,11 +69,8 @@ class Exti final : public RegisterBlock, public ExternalLines {
   class Syscfg final : public RegisterBlock {
    public:
     explicit Syscfg(Exti& exti) : exti_(exti) {}
-    void reset() override { words_ = {}; }
-    void show_boot_loader_chosen() {
-      constexpr std::uint32_t system_memory = 0b01;
-      words_[syscfg_registers.memrmp / 4] = syscfg_registers.memrmp.mem_mode.with(system_memory);
-    }
+    void reset() override;
+    void show_boot_loader_chosen();
     unsigned port_of(unsigned pin) const {
       constexpr unsigned first_word = syscfg_registers.exticr1 / 4;
       return syscfg_registers.exticr1.exti.of(words_[first_word + pin / 4], pin % 4);
@@ -86,6 +83,7 @@ class Exti final : public RegisterBlock, public ExternalLines {
     std::span<const MapEntry> registers() const override { return shown<syscfg_registers>(); }
 
    private:
+    void map_at_zero(std::uint32_t mode);
     static constexpr std::uint32_t bytes = syscfg_registers.cmpcr + 4;
     Exti& exti_;
     std::array<std::uint32_t, bytes / 4> words_{};

@@ -83,30 +83,40 @@ unsigned between(const Instruction& it, const Instruction& next, std::uint32_t n
 /// three words.
 class Fetch {
  public:
-  Fetch(std::uint32_t address, CodeMemory memory, bool after_branch)
-      : fetched_to_(after_branch ? (address & ~3u) + 4 : (address & ~3u) + fetch_buffer_bytes), memory_(memory) {}
+  Fetch(std::uint32_t address, bool after_branch)
+      : fetched_to_(after_branch ? (address & ~3u) + 4 : (address & ~3u) + fetch_buffer_bytes) {}
   /// Wait cycles until the instruction at `address` is fetched completely.
   unsigned wait_for(std::uint32_t address, std::uint32_t bytes) {
     unsigned waited = 0;
     for (; fetched_to_ < address + bytes; fetched_to_ += 4) ++waited;
     return waited;
   }
-  /// Advances the fetch by the `cycles` of an executed instruction. For code in SRAM, the data accesses of the
-  /// instruction delay the fetch.
-  void run(std::uint32_t address, unsigned cycles, unsigned accesses) {
-    if (memory_ == CodeMemory::sram) cycles -= std::min(cycles, accesses);
+  /// Advances the fetch by the `cycles` of an executed instruction. Each of the `delays` takes one cycle from the
+  /// fetch.
+  void run(std::uint32_t address, unsigned cycles, unsigned delays) {
+    cycles -= std::min(cycles, delays);
     const std::uint32_t limit = (address & ~3u) + fetch_buffer_bytes;
     for (; cycles > 0 && fetched_to_ < limit; --cycles) fetched_to_ += 4;
   }
 
  private:
   std::uint32_t fetched_to_;
-  CodeMemory memory_;
 };
 
 unsigned accesses_of(const Instruction& it) {
   if (!it.accesses_memory) return 0;
   return it.words != 0 ? it.words : 1;
+}
+
+/// Accesses of the instruction that delay the instruction fetch, because both use the same bus or the same memory.
+unsigned fetch_delays_of(const Instruction& it, CodeMemory memory, const Costs& costs) {
+  switch (memory) {
+    case CodeMemory::flash: return 0;
+    case CodeMemory::sram: return accesses_of(it);
+    case CodeMemory::remapped_sram:
+      return it.has_literal ? accesses_of(it) : accesses_of(it) * costs[Cost::remapped_data_delays_fetch];
+  }
+  return 0;
 }
 
 /// One pass over the instructions of a block. Fills `block`, or only counts the cycles if `block` is null.
@@ -117,7 +127,7 @@ class Walk {
       : code_(code), address_(address), memory_(memory), costs_(costs), word_(word) {}
 
   unsigned run(bool after_branch, BlockPrice* block) {
-    Fetch fetch(address_, memory_, after_branch);
+    Fetch fetch(address_, after_branch);
     Instruction before;
     unsigned cycle = 0, float_ready = 0, governed = 0;
     std::uint32_t line = ~0u;
@@ -133,7 +143,7 @@ class Walk {
       // IT needs no cycle if the previous instruction is narrow.
       if (it.kind == Kind::if_then && !first && before.bytes == 2 && governed == 0) own = 0;
       if (it.kind == Kind::float_divide) float_ready = cycle + costs_[Cost::float_divide];
-      fetch.run(at, own, accesses_of(it));
+      fetch.run(at, own, fetch_delays_of(it, memory_, costs_));
       cycle += own;
       if (it.kind == Kind::instruction_barrier) cycle += costs_[Cost::refill_immediate];
       governed = it.kind == Kind::if_then ? it.if_then_length : governed - (governed > 0 ? 1 : 0);

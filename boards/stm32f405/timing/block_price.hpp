@@ -12,8 +12,9 @@ namespace inkwell::virtual_board {
 
 /// Instruction memory.
 enum class CodeMemory : std::uint8_t {
-  flash,  ///< separate bus, 128 bits per line
-  sram,   ///< bus shared with data in SRAM
+  flash,          ///< separate bus, 128 bits per line
+  sram,           ///< bus shared with data in SRAM
+  remapped_sram,  ///< SRAM1 at address 0: instruction bus; shares the memory, but not the bus, with data in SRAM1
 };
 
 /// Price of a basic block, that is, its duration in cycles. Each execution of a block uses the same price.

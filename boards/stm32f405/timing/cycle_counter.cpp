@@ -10,6 +10,7 @@ CycleCounter::CycleCounter(Pricing pricing, const CodeMap& map, WordReader word)
       flash_(map.flash_bytes, costs_),
       known_in_flash_(map.flash_bytes / 2),
       known_in_sram_(map.sram_bytes / 2),
+      known_at_zero_(map.sram_bytes / 2),
       word_(std::move(word)) {}
 
 const BlockPrice& CycleCounter::block(std::uint32_t address, std::span<const std::uint8_t> code) {
@@ -38,6 +39,7 @@ void CycleCounter::forget_prices() {
   forgets_ = false;
   std::fill(known_in_flash_.begin(), known_in_flash_.end(), nullptr);
   std::fill(known_in_sram_.begin(), known_in_sram_.end(), nullptr);
+  std::fill(known_at_zero_.begin(), known_at_zero_.end(), nullptr);
   known_elsewhere_.clear();
   known_.clear();
 }

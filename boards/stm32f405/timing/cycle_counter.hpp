@@ -13,7 +13,14 @@ namespace inkwell::virtual_board {
 
 /// Base addresses and sizes of the two instruction memories.
 struct CodeMap {
+  /// Memory that is also mapped at address 0.
+  enum class AtZero : std::uint8_t { flash, sram, other };
   std::uint32_t flash_base, flash_bytes, sram_base, sram_bytes;
+  AtZero at_zero = AtZero::flash;
+  /// Returns the offset in the flash, or a value that is not less than `flash_bytes`.
+  std::uint32_t flash_offset(std::uint32_t address) const {
+    return at_zero == AtZero::flash && address < flash_bytes ? address : address - flash_base;
+  }
 };
 
 class CycleCounter {
@@ -47,6 +54,11 @@ class CycleCounter {
   unsigned wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value);
   /// Returns the wait cycles of a flash access at cycle `now`.
   unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
+  /// Maps another memory at address 0.
+  void map_at_zero(CodeMap::AtZero memory) {
+    map_.at_zero = memory;
+    forget();
+  }
   /// Call this function when the instruction at `address` may have changed.
   void reread(std::uint32_t address);
   /// Call this function after an exception entry, an exception return or a reset.
@@ -72,19 +84,18 @@ class CycleCounter {
     CodeMemory memory;
   };
   PriceSlot slot_of(std::uint32_t address) {
-    // The flash is mapped at address 0 and at flash_base.
-    const std::uint32_t in_flash = address < map_.flash_bytes ? address : address - map_.flash_base;
+    const std::uint32_t in_flash = map_.flash_offset(address);
     if (in_flash < map_.flash_bytes) return {&known_in_flash_[in_flash / 2], CodeMemory::flash};
     if (address - map_.sram_base < map_.sram_bytes)
       return {&known_in_sram_[(address - map_.sram_base) / 2], CodeMemory::sram};
+    if (map_.at_zero == CodeMap::AtZero::sram && address < map_.sram_bytes)
+      return {&known_at_zero_[address / 2], CodeMemory::remapped_sram};
     return {&known_elsewhere_[address], CodeMemory::flash};
   }
   const BlockPrice& remember(const PriceSlot& slot, std::uint32_t address, std::span<const std::uint8_t> code);
   void forget_prices();
 
-  bool in_flash(std::uint32_t address) const {
-    return address < map_.flash_bytes || address - map_.flash_base < map_.flash_bytes;
-  }
+  bool in_flash(std::uint32_t address) const { return map_.flash_offset(address) < map_.flash_bytes; }
   /// A check for flash reads takes longer than executing the block, so only the first runs and every 64th run are
   /// checked.
   static bool polls_reads(const BlockPrice& block) {
@@ -102,7 +113,7 @@ class CycleCounter {
   CodeMap map_;
   FlashAccelerator flash_;
   std::deque<Known> known_;
-  std::vector<Known*> known_in_flash_, known_in_sram_;  ///< index: half-word
+  std::vector<Known*> known_in_flash_, known_in_sram_, known_at_zero_;  ///< index: half-word
   std::unordered_map<std::uint32_t, Known*> known_elsewhere_;
   WordReader word_;
   // State at the end of the previous block.
@@ -136,7 +147,7 @@ inline unsigned CycleCounter::enter(const BlockPrice& block, std::uint64_t now) 
 }
 
 inline unsigned CycleCounter::wait_for(const BlockPrice::Request& request, std::uint64_t now) {
-  const std::uint32_t offset = request.address < map_.flash_bytes ? request.address : request.address - map_.flash_base;
+  const std::uint32_t offset = map_.flash_offset(request.address);
   if (offset >= map_.flash_bytes) return 0;
   return request.is_data ? flash_.read(offset, now) : flash_.fetch(offset, now);
 }
@@ -145,7 +156,7 @@ template <class RegisterValue>
 unsigned CycleCounter::wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value) {
   std::uint32_t address = register_value(read.base) + static_cast<std::uint32_t>(read.offset);
   if (read.index != Instruction::no_register) address += register_value(read.index) << read.shift;
-  const std::uint32_t offset = address < map_.flash_bytes ? address : address - map_.flash_base;
+  const std::uint32_t offset = map_.flash_offset(address);
   return offset < map_.flash_bytes ? flash_.read(offset, now) : 0;
 }
 

@@ -119,7 +119,7 @@ Stop Execution::run_slices(Ticks when) {
     }
     // While the flash is busy, its vectors and instructions cannot be read. The end of the flash operation is a wake
     // event.
-    if (flash_.busy() && Processor::is_in_flash(system_control_.vector_table())) {
+    if (flash_.busy() && machine_.memory.is_in_flash(system_control_.vector_table())) {
       stall_until(when, never);
       continue;
     }

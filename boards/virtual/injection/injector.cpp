@@ -52,12 +52,14 @@ void flip_bit(Chip& chip, const Injection& injection) {
 
 }  // namespace
 
-unsigned Injector::add(const Injection& injection) {
+unsigned Injector::add(Injection injection) {
   if (active_.size() + planned_.size() >= faults_maximum)
     throw InvalidInjection(
         fmt::format("the limit of {} active and planned faults is reached; heal some faults first", faults_maximum));
   if (injection.address) {
     const bool flash = is_within(*injection.address, flash_base, flash_bytes);
+    // The firmware's interrupt code runs from SRAM1 at address 0, so its symbols have these addresses.
+    if (injection.fault == InjectedFault::ram_bit && *injection.address < sram1_bytes) *injection.address += sram_base;
     const bool ram =
         is_within(*injection.address, sram_base, sram_bytes) || is_within(*injection.address, ccm_base, ccm_bytes);
     if ((injection.fault == InjectedFault::ram_bit && !ram) || (injection.fault == InjectedFault::flash_bit && !flash))

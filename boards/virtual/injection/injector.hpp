@@ -46,7 +46,7 @@ class Injector {
   /// Applies the fault after `after_s` (see next()). Replaces a fault of the same kind at the same location. Throws
   /// InvalidInjection if no memory exists at the address, or if `faults_maximum` is reached. Do not call this function
   /// inside Chip::run_until(). Returns a unique number for the fault.
-  unsigned add(const Injection& injection);
+  unsigned add(Injection injection);
   /// Returns the time of the next start or end of a fault. At this time the board calls carry_out().
   Ticks next() const;
   void carry_out();

@@ -54,10 +54,10 @@ TEST_SUITE("virtual chip: memory protection") {
       ChipUnderTest test("guarded_memory", mode);
       test.run_for(0.001);
       REQUIRE(test.result(0) == finished);
-      check_results(test, 1, {passes, passes, passes, passes, passes, passes, passes});
-      check_results(test, 8,
-                    {refused, refused, refused_instruction, refused, refused, refused, refused, refused_instruction,
-                     refused, refused});
+      check_results(test, 1, {passes, passes, passes, passes, passes, passes, passes, passes, passes});
+      check_results(test, 10,
+                    {refused, refused, refused_instruction, refused, refused, refused, refused, refused, refused,
+                     refused_instruction, refused_instruction, refused_instruction, refused, refused});
     }
   }
 

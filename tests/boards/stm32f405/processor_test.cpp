@@ -211,6 +211,22 @@ TEST_SUITE("virtual chip: processor") {
     }
   }
 
+  TEST_CASE("SRAM1 at address 0 runs code, follows changes at both addresses, and gives way to the flash at a reset") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("remapped_sram", mode);
+      test.run_for(0.02);
+      REQUIRE(test.result(0) == finished);
+      CHECK(test.result(1) == 1);
+      CHECK(test.result(2) == 1);
+      CHECK(test.result(3) == 0);
+      if (mode == Mode::exact) CHECK(test.result(4) == test.result(5) + 1);  // the return from SRAM1
+      CHECK(test.result(8) == 1);
+      CHECK(test.result(9) == 1);
+      CHECK(test.log.empty());
+    }
+  }
+
   TEST_CASE("exact mode: the same state after each run, to the instruction") {
     std::uint64_t hashes[2];
     for (auto& hash : hashes) {

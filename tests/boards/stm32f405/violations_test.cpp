@@ -50,6 +50,7 @@ constexpr Case cases[] = {
     {33, Rule::reference_off},
     {34, Rule::reference_hurried},
     {35, Rule::reference_hurried},
+    {36, Rule::core_reset},
 };
 
 /// The host resets the bus when a device connects.

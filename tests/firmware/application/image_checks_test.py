@@ -52,13 +52,13 @@ class ImageChecks(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def test_the_free_memory_is_printed(self):
-        line = r"image\.elf: interrupt code (\d+) of 16384 bytes, (\d+) left; interrupt tables 0 of 2048 bytes, 2048 left; " \
-               r"RAM (\d+) of 114688 bytes, (\d+) left; core-coupled RAM 8192 of 63488 bytes, 55296 left"
+        line = r"image\.elf: interrupt code (\d+) of 32768 bytes, (\d+) left; interrupt tables 0 of 2048 bytes, 2048 left; " \
+               r"RAM (\d+) of 81920 bytes, (\d+) left; SRAM2 0 of 16384 bytes, 16384 left; core-coupled RAM 8192 of 63488 bytes, 55296 left"
         source = "[[gnu::used]] char memory[%d];\nvoid work() { value = value * 2.0f; }"
         small, large = (re.fullmatch(line, self.check(source % size)[0].stdout.strip()) for size in (1000, 3000))
         self.assertIsNotNone(small)
         for code, code_left, ram, ram_left in (small.groups(), large.groups()):
-            self.assertEqual((int(code) + int(code_left), int(ram) + int(ram_left)), (16384, 114688))
+            self.assertEqual((int(code) + int(code_left), int(ram) + int(ram_left)), (32768, 81920))
         self.assertEqual(int(large[3]) - int(small[3]), 2000)
 
     def test_errors_contain_the_names_of_the_source(self):

@@ -42,6 +42,7 @@ enum Violation : std::uint32_t {
   reference_off,
   reference_hurried,
   reference_hurried_on,
+  core_reset,
 };
 
 std::uint32_t violation;
@@ -230,6 +231,7 @@ void run() {
   if (violation == region_number_of_base) word(0xE000ED9C) = 1 << 4 | 8;
   word(0xE000ED9C) = 8;  // the region number is ignored without VALID
   use_narrow_writes();
+  if (violation == core_reset) word(0xE000ED0C) = 0x05FA'0001;
   results[0] = finished;
   for (;;) wait_for_interrupt();
 }

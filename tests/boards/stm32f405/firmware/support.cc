@@ -92,3 +92,10 @@ void watchdog::start() {
   word(rlr) = 499;
   word(kr) = 0xAAAA;
 }
+
+void remap_sram1() {
+  word(rcc::apb2enr) |= 1u << 14;  // SYSCFG
+  [[maybe_unused]] const std::uint32_t clock = word(rcc::apb2enr);
+  word(0x4001'3800) = 3;
+  asm volatile("dsb\n isb" ::: "memory");
+}

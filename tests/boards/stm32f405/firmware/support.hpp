@@ -26,6 +26,8 @@ void run_at_168_MHz();
 inline void wait_for_interrupt() { asm volatile("wfi" ::: "memory"); }
 inline std::uint32_t cycles() { return word(0xE0001004); }
 void start_cycle_counter();
+/// Maps SRAM1 to address 0.
+void remap_sram1();
 
 namespace rcc {
 inline constexpr std::uint32_t cr = 0x40023800, pllcfgr = 0x40023804, cfgr = 0x40023808, ahb1enr = 0x40023830,

@@ -12,10 +12,10 @@ namespace {
 constexpr Costs likely{Pricing::likely}, conservative{Pricing::conservative};
 constexpr std::uint32_t start = 0x0800'0000;
 
-BlockPrice price_of(std::initializer_list<std::uint16_t> program, std::uint32_t address = start,
+BlockPrice price_of(const std::vector<std::uint16_t>& program, std::uint32_t address = start,
                     const Costs& costs = likely, CodeMemory memory = CodeMemory::flash) {
   std::vector<std::uint8_t> code(program.size() * 2);
-  std::memcpy(code.data(), std::data(program), code.size());
+  std::memcpy(code.data(), program.data(), code.size());
   return price(code, address, memory, costs);
 }
 unsigned cycles(std::initializer_list<std::uint16_t> program, std::uint32_t address = start) {
@@ -68,6 +68,21 @@ TEST_CASE("branches: one cycle, and the refill if they are taken") {
   CHECK(pop.cycles + pop.taken_cycles == 1 + 2 + 3);
   CHECK(price_of({0xD1FE}, start, conservative).taken_cycles == 2);
   CHECK(price_of({0xD1FE}, 0x2000'0000, likely, CodeMemory::sram).taken_cycles == 2);
+}
+
+TEST_CASE("code in SRAM1 at address 0 waits for no bus, but literals delay its fetch") {
+  const auto price_in = [](CodeMemory memory, const std::vector<std::uint16_t>& code, const Costs& costs = likely) {
+    return price_of(code, 0x1'4000, costs, memory);
+  };
+  CHECK(price_in(CodeMemory::remapped_sram, {0xD1FE}).taken_cycles == 1);  // bne
+  // Each instruction of four bytes needs the next fetched word, so a delayed fetch costs a cycle.
+  const std::vector<std::uint16_t> literals{0xF8DF, 0x0010, 0xF8DF, 0x1010, 0xF8DF,
+                                            0x2010, 0xF8DF, 0x3010, 0xF100, 0x0001};
+  const std::vector<std::uint16_t> data{0xF8D4, 0x0010, 0xF8D4, 0x1010, 0xF8D4, 0x2010, 0xF8D4, 0x3010, 0xF100, 0x0001};
+  CHECK(price_in(CodeMemory::remapped_sram, data).cycles == price_in(CodeMemory::flash, data).cycles);
+  CHECK(price_in(CodeMemory::remapped_sram, literals).cycles > price_in(CodeMemory::flash, literals).cycles);
+  CHECK(price_in(CodeMemory::remapped_sram, data, conservative).cycles ==
+        price_in(CodeMemory::sram, data, conservative).cycles);
 }
 
 TEST_CASE("a branch to a wide instruction across two words waits for the second") {

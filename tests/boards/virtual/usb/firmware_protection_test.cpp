@@ -23,7 +23,7 @@ constexpr std::uint16_t load_by_r0 = 0x6800, store_by_r0 = 0x6000;  // ldr r0, [
 constexpr std::uint32_t if_then_bits = 0x0600'FC00;                 // in xPSR: IT state
 
 // Addresses of boards/facts/stm32f405.ld.
-constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000, interrupt_code = 0x2001'C200;
+constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000, interrupt_code = 0x1'4200;
 
 std::uint16_t half_word(const FirmwareOnBus& bus, std::uint32_t address) {
   return static_cast<std::uint16_t>(bus.chip.memory_word(address & ~3u) >> 8 * (address & 2));
@@ -157,8 +157,11 @@ TEST_CASE("each invalid memory access or jump raises a CPU fault with its progra
       {"a null pointer is written", store, 8, no_data | valid_address},
       {"the flash is written", store, 0x0801'8000, no_data | valid_address},
       {"behind the flash", load, 0x0810'0000, no_data | valid_address},
-      {"the code of interrupts is written", store, 0x2001'C100, no_data | valid_address},
-      {"its last word", store, 0x2001'FFFC, no_data | valid_address},
+      {"the interrupt code is written", store, 0x0001'4100, no_data | valid_address},
+      {"the last word of the interrupt code is written", store, 0x0001'BFFC, no_data | valid_address},
+      {"the interrupt code is written at its address in SRAM1", store, 0x2001'4100, no_data | valid_address},
+      {"SRAM1 is read at address 0, before the interrupt code", load, 0x0001'3FFC, no_data | valid_address},
+      {"SRAM2 is run", 0x2001'C100, 0, no_instruction},
       {"the tables of interrupts are written", store, 0x1000'F800, no_data | valid_address},
       {"a bit's alias", store, 0x2200'0004, no_data | valid_address},
       {"data are run", 0x2000'0100, 0, no_instruction},
