@@ -107,5 +107,27 @@ TEST_CASE(
   CHECK(json.at("remarks").empty());
 }
 
+TEST_CASE("each force law of the tree and of the documentation runs as a complete image without fault") {
+  std::ifstream list(build_directory() + "/../board/force-law-images.txt");
+  std::size_t count = 0;
+  for (std::string image; std::getline(list, image); ++count) {
+    CAPTURE(image);
+    if (image == "quotient.elf") continue;  // force_law_fault_test.cpp provokes its fault
+    BoardRig rig(image);
+    const auto law = rig.device->information().force_law;
+    REQUIRE(law != nullptr);
+    CHECK(law->name == (image == "inkwell.elf" ? "box" : std::filesystem::path(image).stem().string()));
+    rig.make_active();
+    for (const device::Vector3& target_m : {device::Vector3{0.02, 0.01, -0.03}, {-0.02, 0.0, 0.0}, {0.0, 0.06, -0.03}})
+      rig.take_to(target_m, 0.3);
+    CHECK(protocol::force_is_on(rig.pose().state));
+    CHECK(rig.pose().fault == Fault::none);
+    const auto report = rig.device->information().report;
+    CHECK(report.servo_cycles_longest > 500);
+    CHECK(report.servo_overruns == 0);
+  }
+  CHECK(count >= 7);
+}
+
 }  // namespace
 }  // namespace inkwell::tests

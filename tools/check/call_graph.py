@@ -35,6 +35,17 @@ class Image:
     interrupts: list[str]  # handlers of the vector table, except reset and CPU fault handlers
     pended: str  # handler that only PendSV uses, or an empty string
     symbols: dict[str, int]
+    sizes: dict[str, int]  # bytes of each symbol
+    elf: str
+
+    def source_location(self, address: int) -> str:
+        return source_location(self.elf, address)
+
+    def location_of_call(self, function: Function, target: str) -> str:
+        """Returns FILE:LINE of the first direct call, or of the start of the function."""
+        names = (f"<{target}>", f"<__{target}_veneer>")
+        calls = (address for address, text in function.instructions if text.endswith(names))
+        return self.source_location(next(calls, function.address))
 
     def targets(self, function: Function) -> tuple[set[str], set[str]]:
         """The functions that a function calls directly, and those that it may call through pointers."""
@@ -45,11 +56,11 @@ class Image:
             indirect.update(self.constructors)
         return function.calls, indirect & self.functions.keys()
 
-    def reachable(self, start: str) -> set[str]:
+    def reachable(self, start: str, without: frozenset[str] = frozenset()) -> set[str]:
         found, waiting = set(), [start]
         while waiting:
             name = waiting.pop()
-            if name not in found:
+            if name not in found and name not in without:
                 found.add(name)
                 waiting.extend(set.union(*self.targets(self.functions[name])))
         return found
@@ -57,6 +68,14 @@ class Image:
 
 def run(*command: str) -> str:
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def source_location(elf: str, address: int) -> str:
+    """Returns FILE:LINE of an instruction, or its address if the image has no debug information. For an inlined library
+    function, returns the location of its call."""
+    lines = [line.split(" ")[0] for line in run("arm-none-eabi-addr2line", "-i", "-e", elf, f"{address:#x}").splitlines()]
+    own = [line for line in lines if not line.startswith(("/usr/", "??"))]
+    return own[0] if own else f"{address:#x}"
 
 
 def readable(text: str) -> str:
@@ -183,14 +202,15 @@ def read_interrupts(elf: str, by_address: dict[int, str]) -> tuple[list[str], st
 def read_image(elf: str) -> Image:
     functions = read_functions(elf)
     by_address = {function.address: name for name, function in functions.items()}
-    symbols, tables = {}, []
+    symbols, sizes, tables = {}, {}, []
     for line in run("arm-none-eabi-nm", "-S", elf).splitlines():
         parts = line.split()
         symbols[parts[-1]] = int(parts[0], 16)
+        sizes[parts[-1]] = int(parts[1], 16) if len(parts) == 4 else 0
         if parts[-1].startswith("_ZTV") and len(parts) == 4:
             # The first slot follows two words, the offset to top and the type information.
             words = read_words(elf, int(parts[0], 16), int(parts[1], 16) // 4)[2:]
             tables.append([by_address.get(word & ~1, "") for word in words])
     begin, end = symbols["constructors_begin"], symbols["constructors_end"]
     constructors = [by_address[word & ~1] for word in read_words(elf, begin, (end - begin) // 4)] if end > begin else []
-    return Image(functions, tables, constructors, *read_interrupts(elf, by_address), symbols)
+    return Image(functions, tables, constructors, *read_interrupts(elf, by_address), symbols, sizes, elf)

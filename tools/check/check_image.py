@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 from call_graph import Image, Unreadable, read_image, readable, run
-from interrupt_rules import broken_interrupt_rules
+from interrupt_rules import LAW_FUNCTIONS, broken_interrupt_rules
 
 # Functions that the firmware image must not contain, with their causes. Each key is a pattern of a whole symbol name.
 FORBIDDEN = {
@@ -23,7 +23,8 @@ FORBIDDEN = {
     r"__cxa_(throw|rethrow|begin_catch|allocate_exception)|_Unwind_\w+": "exceptions",
     r"__cxa_guard_\w+": "thread-safe initialisation of local variables",
     r"_ZTI.*|__dynamic_cast": "run-time type information",
-    r"(sin|cos|tan|a?sin|acos|atan2?|exp|log|pow|fmod|sqrt|cbrt|hypot)f?l?": "the mathematical library",
+    r"(sin|cos|tan|a?sin|acos|atan2?|exp|log|pow|fmod|sqrt|cbrt|hypot)f?l?":
+        "the mathematical library. Use __builtin_sqrtf or control/trigonometry.hpp",
     r"_?(v?f?n?printf|puts|_vfprintf_r)": "formatted printing",
 }
 
@@ -40,26 +41,64 @@ REGIONS = {"INTERRUPT": "interrupt code", "TABLES": "interrupt tables", "RAM": "
 LINKER_SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "boards/facts/stm32f405.ld"
 
 
+def usage(region: str, sections: dict[str, tuple[int, int]]) -> tuple[int, int, int]:
+    """Start address, size and used bytes of a region."""
+    memory = re.search(rf"^ +{region} \(\w+\) *: ORIGIN = (0x[0-9A-F]+), LENGTH = (\d+)K", LINKER_SCRIPT.read_text(),
+                       re.MULTILINE)
+    begin, room = int(memory[1], 16), 1024 * int(memory[2])
+    used = max((address + size - begin for size, address in sections.values() if begin <= address < begin + room),
+               default=0)
+    return begin, room, used
+
+
 def free_memory(sections: dict[str, tuple[int, int]]) -> str:
     """Used and free bytes of each region in REGIONS."""
     texts = []
-    script = LINKER_SCRIPT.read_text()
     for region, name in REGIONS.items():
-        memory = re.search(rf"^ +{region} \(\w+\) *: ORIGIN = (0x[0-9A-F]+), LENGTH = (\d+)K", script, re.MULTILINE)
-        begin, room = int(memory[1], 16), 1024 * int(memory[2])
-        used = max((address + size - begin for size, address in sections.values() if begin <= address < begin + room),
-                   default=0)
+        _, room, used = usage(region, sections)
         texts.append(f"{name} {used} of {room} bytes, {room - used} left")
     return "; ".join(texts)
 
 
 def forbidden_symbols(image: Image) -> list[str]:
     return [
-        f"the image holds {name}: {meaning}"
+        f"the image holds {name}: {meaning}{caller_of(image, name)}"
         for name in sorted(image.symbols)
         for pattern, meaning in FORBIDDEN.items()
         if re.fullmatch(pattern, name)
     ]
+
+
+def caller_of(image: Image, name: str) -> str:
+    """Returns the location of a call of the function, preceded by a comma, or an empty text."""
+    callers = (function for function in image.functions.values() if name in function.calls)
+    caller = next(callers, None)
+    return f", called at {image.location_of_call(caller, name)}" if caller else ""
+
+
+# The firmware needs far less than this limit. A larger image probably contains unwanted code.
+CODE_LIMIT_BYTES = 48 * 1024
+
+
+def law_bytes(image: Image, section: range) -> int:
+    """Bytes of interrupt code that only the force law needs."""
+    laws = frozenset(name for name in image.functions if any(law in name for law in LAW_FUNCTIONS))
+    others = set().union(*(image.reachable(name, laws) for name in image.interrupts))
+    of_law = set().union(*map(image.reachable, laws)) - others
+    return sum(image.sizes[name] for name in of_law if image.functions[name].address in section)
+
+
+def exceeded_limits(sections: dict[str, tuple[int, int]], of_law: int) -> list[str]:
+    problems = []
+    _, room, used = usage("INTERRUPT", sections)
+    if used > room:
+        problems.append(
+            f"the interrupt code needs {used} bytes, but its memory has {room}. The force law needs {of_law} bytes and "
+            f"may need {max(room - used + of_law, 0)}. Use fewer unrolled loops, or share code in a function.")
+    code = sections.get(".text", (0, 0))[0]
+    if code > CODE_LIMIT_BYTES:
+        problems.append(f"the code of the main loop takes {code} bytes, and the limit is {CODE_LIMIT_BYTES}")
+    return problems
 
 
 def main() -> int:
@@ -76,7 +115,11 @@ def main() -> int:
     print(f"{pathlib.Path(arguments.elf).name}: {free_memory(sections)}")
 
     size, address = sections.get(".interrupt_text", (0, 0))
-    problems = forbidden_symbols(image) + broken_interrupt_rules(image, range(address, address + size))
+    section = range(address, address + size)
+    of_law = law_bytes(image, section)
+    _, room, used = usage("INTERRUPT", sections)
+    print(f"force law: {of_law} of {max(room - used + of_law, 0)} bytes of interrupt code")
+    problems = (forbidden_symbols(image) + broken_interrupt_rules(image, section)) or exceeded_limits(sections, of_law)
     for problem in problems:
         print(f"ERROR: {readable(problem)}", file=sys.stderr)
     return 1 if problems else 0

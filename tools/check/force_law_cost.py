@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tomllib
 
-from call_graph import Function, read_functions, readable, run
+from call_graph import Function, read_functions, readable, source_location
 from interrupt_rules import LEAVES, outer_loops, paths_of
 
 # With eight planes, a sphere and three contacts with friction, more than 3500 of the 8400 cycles of a period remain. A
@@ -62,7 +62,7 @@ def price(text: str, costs: dict[str, int]) -> int:
     starts with a fetch."""
     cycles = 0
     if PROGRAM_COUNTER.search(text):
-        cycles += costs["refill_load"] + costs["sram_refill"] + 1
+        cycles += costs["refill_load"] + 1
     if several := LIST.match(text):
         words = words_of(several[2])
         base = costs["float_multiple_base"] if several[1] else costs["multiple_base"]
@@ -76,11 +76,11 @@ def price(text: str, costs: dict[str, int]) -> int:
         beyond = max(costs["load_stall"], costs["store_before_load"] + costs["store_register_offset"] - 1)
         return cycles + 1 + beyond + costs["address_from_previous"] + 1
     if TABLE.match(text):
-        return costs["table_branch"] + costs["sram_refill"] + 1
+        return costs["table_branch"] + 1
     if JUMP_TO_REGISTER.match(text):
-        return 1 + costs["refill_register"] + costs["sram_refill"] + 1
+        return 1 + costs["refill_register"] + 1
     if JUMP.match(text):
-        return 1 + costs["refill_immediate"] + costs["sram_refill"] + 1
+        return 1 + costs["refill_immediate"] + 1
     if ROOT_OR_QUOTIENT.match(text):
         return 1 + costs["float_divide"] + costs["float_result_used_next"]
     if QUOTIENT.match(text):
@@ -126,7 +126,7 @@ class Bound:
                 paths[address] = set(addresses[i + 1:])  # a jump through a table
         if loops := outer_loops(paths):
             raise Refused(
-                f"the force law has a loop at {self.source_location(min(loops[0]))} of which the compiler does not know how often it "
+                f"the force law has a loop at {source_location(self.elf, min(loops[0]))} of which the compiler does not know how often it "
                 "runs. Let it run a constant number of times, at most 64, with a condition inside for what must not be done.")
         calls = self.calls(function)
         dearest: dict[int, int] = {}
@@ -155,10 +155,6 @@ class Bound:
             if target and target[1] in self.functions and (target[1] != function.name or text.startswith("bl\t")):
                 found[address] = target[1]
         return found
-
-    def source_location(self, address: int) -> str:
-        line = run("arm-none-eabi-addr2line", "-e", self.elf, f"{address:#x}").split(" ")[0].strip()
-        return f"{address:#x}" if line.startswith("??") else line
 
 
 def main() -> int:

@@ -119,10 +119,10 @@ def endless_loops(function: Function, paths: Paths) -> list[set[int]]:
     return found
 
 
-def waits(function: Function) -> list[str]:
+def waits(function: Function) -> list[int]:
     """Addresses at which the function waits: sleep instructions, and starts of loops without a counter."""
     asleep = [address for address, text in function.instructions if text.startswith(("wfi", "wfe"))]
-    return [f"{address:x}" for address in asleep + [min(loop) for loop in endless_loops(function, paths_of(function))]]
+    return asleep + [min(loop) for loop in endless_loops(function, paths_of(function))]
 
 
 # ---- pending stores ----------------------------------------------------------------------------------------------
@@ -147,6 +147,9 @@ def returns_before_stores_end(function: Function) -> bool:
     return False
 
 
+# Functions of the installed force law.
+LAW_FUNCTIONS = ("step_force_law", "reset_force_law")
+
 # ---- the rules -------------------------------------------------------------------------------------------------
 
 
@@ -159,7 +162,7 @@ def leaves(image: Image, name: str, section: range) -> list[str]:
     function = image.functions[name]
     problems = [
         f"{name} runs in an interrupt and calls {target}{meaning_of(target)} which lies outside .interrupt_text: "
-        "mark it INKWELL_INTERRUPT or do without it"
+        f"mark it INKWELL_INTERRUPT or do without it (call at {image.location_of_call(function, target)})"
         for target in sorted(function.calls)
         if image.functions[target].address not in section
     ]
@@ -207,10 +210,14 @@ def broken_interrupt_rules(image: Image, section: range) -> list[str]:
     priced = set().union(*map(image.reachable, laws))
     for name in sorted(reached):
         function = image.functions[name]
+        if function.address not in section:
+            continue  # its call is the error
         problems += leaves(image, name, section)
-        if function.address in section and reads_flash(function):
+        if reads_flash(function):
             problems.append(f"{name} runs in an interrupt and reads the flash: its tables belong into .interrupt_tables")
         if name not in priced:
             problems += [f"division in an interrupt, in {name} at {address}" for address in function.divides]
-        problems += [f"{name} runs in an interrupt and waits at {address}" for address in waits(function)]
+        problems += [
+            f"{name} runs in an interrupt and waits at {image.source_location(address)}" for address in waits(function)
+        ]
     return problems

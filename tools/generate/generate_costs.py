@@ -3,7 +3,6 @@
 
 usage: generate_costs.py COSTS.toml
 """
-import json
 import pathlib
 import sys
 import tomllib
@@ -14,11 +13,11 @@ def main() -> None:
         sys.exit(__doc__)
     source = pathlib.Path(sys.argv[1])
     try:
-        rows = [
-            f"  X({name}, {row['likely']}, {row['conservative']}, {row['source']}, {json.dumps(row['meaning'])})"
-            for name, row in tomllib.loads(source.read_text()).items()
-        ]
-    except (OSError, tomllib.TOMLDecodeError, KeyError, TypeError) as error:
+        table = tomllib.loads(source.read_text())
+        if without := [name for name, row in table.items() if not row.get("meaning")]:
+            sys.exit(f"{source}: {without[0]} has no meaning. State what the cost is for.")
+        rows = [f"  X({name}, {row['likely']}, {row['conservative']}, {row['source']})" for name, row in table.items()]
+    except (OSError, tomllib.TOMLDecodeError, KeyError, TypeError, AttributeError) as error:
         sys.exit(f"{source}: {error!r}. Each row needs likely, conservative, source and meaning.")
     lines = [f"// Made by the build from {source.name}; edit that file instead.", "#pragma once", "",
              "#define INKWELL_COSTS(X) \\", " \\\n".join(rows)]

@@ -33,12 +33,10 @@ struct CostInfo {
   std::string_view name;
   std::uint8_t likely, conservative;
   Source source;
-  std::string_view meaning;
 };
 
 inline constexpr CostInfo cost_table[] = {
-#define X(name, likely, conservative, source, meaning) \
-  {Cost::name, #name, likely, conservative, Source::source, meaning},
+#define X(name, likely, conservative, source) {Cost::name, #name, likely, conservative, Source::source},
     INKWELL_COSTS(X)
 #undef X
 };

@@ -14,9 +14,8 @@ int main() {
     }
     return "";
   };
-  std::puts("| cost | likely | conservative | source | what |");
-  std::puts("| --- | --- | --- | --- | --- |");
+  std::puts("| cost | likely | conservative | source |");
+  std::puts("| --- | --- | --- | --- |");
   for (const auto& row : cost_table)
-    std::printf("| `%s` | %u | %u | %s | %s |\n", row.name.data(), row.likely, row.conservative, source(row.source),
-                row.meaning.data());
+    std::printf("| `%s` | %u | %u | %s |\n", row.name.data(), row.likely, row.conservative, source(row.source));
 }
