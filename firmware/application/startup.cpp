@@ -59,7 +59,7 @@ extern "C" [[noreturn, gnu::used]] void start() {
   std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
   std::fill(sram2_zero_begin, sram2_zero_end, 0u);
   std::memcpy(in_sram1(interrupt_vectors), &vectors, sizeof vectors);
-  started_by_boot_loader = drivers::read_boot_mode_and_remap_sram1() != 0;
+  started_by_boot_loader = drivers::read_boot_mode_and_remap_sram1() == drivers::boot_loader_mode;
   // From here on, the processor reads the vector table from RAM.
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");

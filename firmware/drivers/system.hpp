@@ -26,8 +26,11 @@ inline ResetCause take_reset_cause() {
   return cause;
 }
 
+/// SYSCFG_MEMRMP.MEM_MODE after a reset while the boot pins select the boot loader.
+inline constexpr std::uint32_t boot_loader_mode = 0b01;
+
 /// Maps SRAM1 to address 0 until the next reset (RM0090, SYSCFG_MEMRMP and "Memory map"). Returns the previous value of
-/// MEM_MODE. After a reset this value is the selection of the boot pins: 0 for the flash, 1 for the boot loader.
+/// MEM_MODE, which is the selection of the boot pins after a reset.
 inline std::uint32_t read_boot_mode_and_remap_sram1() {
   using registers::SYSCFG;
   registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(1));

@@ -36,6 +36,7 @@ void Processor::guard_float_instructions() {
       throw ChipError("The processor emulation (Unicorn) cannot add hooks to FPU instructions.");
   });
   uc_ctl_remove_cache(engine_, std::uint64_t{guard_address_}, std::uint64_t{guard_address_} + guard_bytes_);
+  forget_pages();  // as in forget_code()
   guard_bytes_ = 0;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "boards/stm32f405/core/address_space.hpp"
@@ -47,6 +48,8 @@ struct Machine {
   Debugging debugging;
   DebugHalt debug_halt;
   std::vector<ClockUser*> clock_users;
+  /// Called after a write to RAM that the processor's store instructions have not made: DMA and bit-band writes.
+  std::function<void(std::uint32_t address, std::uint32_t bytes)> on_ram_write;
 
   double supply_V = logic_supply_V, analog_supply_V = logic_supply_V;
   bool supply_is_low = false;        ///< the brown-out reset is active

@@ -29,7 +29,11 @@ class PlainStores {
     if (page < sram1_bytes) return holds_code_[page / page_bytes];
     return page - sram_base < sram1_bytes && holds_code_at_zero_[(page - sram_base) / page_bytes];
   }
-  /// Call this when another memory is mapped at address 0.
+  /// Returns true if instructions of this RAM page run at one of its addresses.
+  bool holds_code(std::uint32_t address) const {
+    return address - sram_base < sram_bytes && (!plain(address) || holds_code_at_other_address(address));
+  }
+  /// Call this function when another memory is mapped at address 0.
   void forget_code_at_zero() { holds_code_at_zero_.reset(); }
   /// Returns true if `address` is in a RAM page without executed instructions.
   bool plain(std::uint32_t address) const {

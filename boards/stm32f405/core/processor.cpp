@@ -43,6 +43,11 @@ Processor::Processor(Machine& machine, const BusWindows& windows, FlashPort& fla
               [&memory = machine.memory](std::uint32_t address) { return memory.word(address); }),
       register_bus_(timing_.costs()) {
   machine.clock_users.push_back(this);
+  machine.on_ram_write = [this](std::uint32_t address, std::uint32_t bytes) {
+    if (!plain_stores_.holds_code(address)) return;
+    forget_code_later(address, bytes);
+    end_slice();
+  };
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
   // The Cortex-M4 model already selects the M profile; UC_MODE_MCLASS would select another CPU model.
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "emulate a Cortex-M4");

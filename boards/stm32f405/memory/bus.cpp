@@ -191,6 +191,7 @@ void Bus::write(std::uint32_t address, std::uint32_t value, unsigned size) {
     std::uint8_t& byte = machine_.memory.sram()[bit / 8];
     const auto mask = static_cast<std::uint8_t>(1u << (bit % 8));
     byte = static_cast<std::uint8_t>((value & 1) != 0 ? byte | mask : byte & ~mask);
+    machine_.on_ram_write(sram_base + bit / 8, 1);
   } else if (address - peripheral_alias_base < peripheral_alias_bytes) {
     const std::uint32_t bit = (address - peripheral_alias_base) / 4;
     const std::uint32_t target = apb_base + bit / 32 * 4, mask = 1u << (bit % 32);

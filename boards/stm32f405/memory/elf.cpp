@@ -115,10 +115,10 @@ std::string program_elf(std::span<const char> file, const std::string& name, Add
     if (segment.p_offset > file.size() || segment.p_filesz > file.size() - segment.p_offset)
       throw ChipError(name + " is truncated: its segment at " + hexadecimal(segment.p_paddr) +
                       " is incomplete. Build or copy the file again.");
+    if (segment.p_paddr < flash_bytes) segment.p_paddr += flash_base;  // at a reset the flash is also mapped at 0
     if (memory.at(segment.p_paddr, segment.p_filesz) == nullptr)
       throw ChipError(name + " does not fit the STM32F405: " + std::to_string(segment.p_filesz) + " bytes at " +
                       hexadecimal(segment.p_paddr) + " are outside of its memories. Correct the linker script.");
-    if (segment.p_paddr < flash_bytes) segment.p_paddr += flash_base;  // the flash is also mapped at 0
     segments.push_back(segment);
   }
   if (segments.empty()) throw ChipError(name + " has no data to load. Link it with a linker script for the STM32F405.");

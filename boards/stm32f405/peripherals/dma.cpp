@@ -97,6 +97,7 @@ bool DmaController::store(std::uint32_t address, unsigned size, std::uint32_t va
   std::uint8_t* memory = machine_.memory.ram_at(address, size);
   if (memory == nullptr || address < sram_base) return false;
   std::memcpy(memory, &value, size);
+  machine_.on_ram_write(address, size);
   return true;
 }
 

@@ -201,6 +201,7 @@ const std::optional<Fault>& Chip::first_fault() const { return parts_->execution
 const std::vector<Violation>& Chip::violations() const { return parts_->machine.violations.list(); }
 const std::vector<std::string>& Chip::unmodelled_accesses() const { return parts_->machine.log.lines(); }
 std::vector<RegisterMap> Chip::register_maps() const { return parts_->bus.register_maps(); }
+bool Chip::sram1_is_at_zero() const { return parts_->machine.memory.at_zero() == MemoryAtZero::sram1; }
 std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->machine.memory.word(address); }
 
 std::span<std::uint8_t> Chip::flash() { return {parts_->machine.memory.flash(), flash_bytes}; }

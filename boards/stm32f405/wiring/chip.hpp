@@ -168,6 +168,8 @@ class Chip {
   /// Returns a word of flash, SRAM or CCM for debuggers, without side effects. Returns 0 for addresses outside of
   /// flash, SRAM and CCM.
   std::uint32_t memory_word(std::uint32_t address) const;
+  /// Returns true if SRAM1 is mapped to address 0.
+  bool sram1_is_at_zero() const;
   /// Contents of the flash. Call reset() after a change of the contents.
   std::span<std::uint8_t> flash();
   /// Hash of SRAM, CCM, cycle count and core registers.

@@ -58,8 +58,10 @@ unsigned Injector::add(Injection injection) {
         fmt::format("the limit of {} active and planned faults is reached; heal some faults first", faults_maximum));
   if (injection.address) {
     const bool flash = is_within(*injection.address, flash_base, flash_bytes);
-    // The firmware's interrupt code runs from SRAM1 at address 0, so its symbols have these addresses.
-    if (injection.fault == InjectedFault::ram_bit && *injection.address < sram1_bytes) *injection.address += sram_base;
+    // The interrupt code of the firmware runs from SRAM1 at address 0, so its symbols have these addresses.
+    if (injection.fault == InjectedFault::ram_bit && victims_.chip.sram1_is_at_zero() &&
+        *injection.address < sram1_bytes)
+      *injection.address += sram_base;
     const bool ram =
         is_within(*injection.address, sram_base, sram_bytes) || is_within(*injection.address, ccm_base, ccm_bytes);
     if ((injection.fault == InjectedFault::ram_bit && !ram) || (injection.fault == InjectedFault::flash_bit && !flash))

@@ -53,6 +53,9 @@ void run() {
     if (call(at_own_address) != 200 - value) wrong |= 8;
     write_function(offset, value);
     if (call(at_own_address) != value) wrong |= 16;
+    word(0x2200'0000 + 32 * (at_own_address - 0x2000'0000)) = ~value & 1;  // changes the lowest bit of the instruction
+    if (call(offset) != (value ^ 1)) wrong |= 32;
+    if (call(at_own_address) != (value ^ 1)) wrong |= 64;
   }
   results[3] = wrong;
   // At address 0, a fetch does not cross the system bus.
