@@ -48,7 +48,7 @@ bool is_after_call(std::uint32_t address) {
     return address >= address_of(begin) + 4 && address < address_of(end);
   };
   if (address % 2 != 0) return false;
-  if (!lies_in(code_begin, image_check) && !lies_in(interrupt_text_begin, interrupt_text_end)) return false;
+  if (!lies_in(text_begin, image_check) && !lies_in(interrupt_text_begin, interrupt_text_end)) return false;
   const auto* after_call = reinterpret_cast<const std::uint16_t*>(address);
   return ((after_call[-2] & 0xF800) == 0xF000 && (after_call[-1] & 0xD000) == 0xD000) ||
          (after_call[-1] & 0xFF87) == 0x4780;

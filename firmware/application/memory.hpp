@@ -21,7 +21,7 @@ extern std::uint32_t core_coupled_data_begin[], core_coupled_data_end[], core_co
     core_coupled_zero_end[], sram2_zero_begin[], sram2_zero_end[];
 extern std::uint32_t interrupt_vectors[], interrupt_text_begin[], interrupt_text_end[], interrupt_tables_begin[],
     interrupt_tables_end[];
-extern const std::uint32_t copied_begin[], copied_end[], code_begin[], image_check[];
+extern const std::uint32_t copied_begin[], copied_end[], code_begin[], text_begin[], image_check[];
 extern std::uint32_t parameter_store[];  // changed by flash programming, not by compiled stores
 extern const std::uint32_t data_image[], core_coupled_data_image[], interrupt_text_image[], interrupt_tables_image[];
 extern void (*const constructors_begin[])();

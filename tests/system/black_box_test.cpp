@@ -134,7 +134,9 @@ TEST_CASE("a processor fault leaves the rows before it and the address of the cr
   const auto named = run_program("inkwell", {"fault", "--usbip", address, "--elf", image.string()});
   INFO(named.out, named.err);
   CHECK(named.exit_code == 0);
-  CHECK(named.out.find(" main (main.cpp:") != std::string::npos);
+  // The caller of main() is always on the stack. Main itself is not, if the link register belongs to a function that it
+  // has called.
+  CHECK(named.out.find(" start (startup.cpp:") != std::string::npos);
   const auto other_image = image.parent_path() / "force-law-magnet.elf";
   const auto refused = run_program("inkwell", {"fault", "--usbip", address, "--elf", other_image.string()});
   CHECK(refused.exit_code == 1);

@@ -122,7 +122,7 @@ class Bound:
         for i, (address, text) in enumerate(function.instructions):
             if CONDITIONAL_LEAVE.match(text):
                 paths[address] = paths[address] | set(addresses[i + 1:i + 2])
-            if LEAVES.match(text) and text.startswith("ldr"):
+            if LEAVES.match(text) and text.startswith("ldr") and "[sp]" not in text:  # a load from the stack is a return
                 paths[address] = set(addresses[i + 1:])  # a jump through a table
         if loops := outer_loops(paths):
             raise Refused(

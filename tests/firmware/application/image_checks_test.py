@@ -27,14 +27,14 @@ void reset_handler() { for (;;) work(); }
 
 
 class ImageChecks(unittest.TestCase):
-    def check(self, source: str) -> tuple[subprocess.CompletedProcess, subprocess.CompletedProcess]:
+    def check(self, source: str, linker_script: pathlib.Path = LINKER_SCRIPT) -> tuple[subprocess.CompletedProcess, subprocess.CompletedProcess]:
         """Builds an image and returns the output of check_image and stack_bound."""
         with tempfile.TemporaryDirectory() as folder:
             file, elf = pathlib.Path(folder) / "image.cpp", pathlib.Path(folder) / "image.elf"
             file.write_text(FRAME + source)
             subprocess.run(
                 ["arm-none-eabi-g++", "-std=c++20", "-O2", "-g", *CORE, "-fno-exceptions", "-fno-rtti", "-I", PLACEMENT,
-                 "-nostartfiles", "-T", LINKER_SCRIPT, file, "-o", elf, "-lm", "-lc", "-lnosys"],
+                 "-nostartfiles", "-T", linker_script, file, "-o", elf, "-lm", "-lc", "-lnosys"],
                 check=True, capture_output=True)
             commands = (["check_image.py", elf], ["stack_bound.py", elf])
             check_image, stack_bound = (
@@ -70,6 +70,15 @@ class ImageChecks(unittest.TestCase):
             r"The force law needs (\d+) bytes and may need (\d+)\.", check_image.stderr).groups())
         self.assertGreater(law, 40000)
         self.assertEqual(used - law + allowed, 32768)
+
+    def test_too_large_tables_of_interrupt_code_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            script = pathlib.Path(folder) / "stm32f405.ld"
+            script.write_text(LINKER_SCRIPT.read_text().replace("*installed_force_law.cpp.obj(.rodata", "*(.law_table .rodata.law"))
+            check_image, _ = self.check('[[gnu::used, gnu::section(".law_table")]] extern const int table[600] = {1};\n'
+                                        "void work() { value = 1.0f; }", script)
+        self.assert_refused(check_image, "the tables of interrupt code need 2400 bytes, but their memory has 2048. "
+                                         "The tables of the force law need 2400 bytes and may need 2048.")
 
     def test_a_library_function_is_refused_with_the_line_of_its_call(self):
         check_image, _ = self.check('extern "C" float sinf(float);\n\nvoid work() { value = sinf(value); }')

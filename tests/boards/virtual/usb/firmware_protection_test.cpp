@@ -22,8 +22,8 @@ using virtual_board::CoreRegisters;
 constexpr std::uint16_t load_by_r0 = 0x6800, store_by_r0 = 0x6000;  // ldr r0, [r0]; str r0, [r0]
 constexpr std::uint32_t if_then_bits = 0x0600'FC00;                 // in xPSR: IT state
 
-// Addresses of boards/facts/stm32f405.ld.
-constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000, interrupt_code = 0x1'4200;
+// Addresses within .text and .interrupt_text (boards/facts/stm32f405.ld).
+constexpr std::uint32_t code = virtual_board::flash_base + 0x1'5000, interrupt_code = 0x1'4200;
 
 std::uint16_t half_word(const FirmwareOnBus& bus, std::uint32_t address) {
   return static_cast<std::uint16_t>(bus.chip.memory_word(address & ~3u) >> 8 * (address & 2));
