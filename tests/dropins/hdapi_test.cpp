@@ -17,7 +17,7 @@ TEST_CASE("without an open device, the version is available, and other calls set
   forget_errors();
   CHECK(std::string(hdGetString(HD_VERSION)).size() > 2);
   CHECK(only_error() == HD_SUCCESS);
-  CHECK(hdGetCurrentDevice() == HD_INVALID_HANDLE);
+  CHECK(hdGetCurrentDevice() == 0);  // the handle of the first device, which some programs expect
   double position_mm[3];
   hdGetDoublev(HD_CURRENT_POSITION, position_mm);
   CHECK(only_error() == HD_BAD_HANDLE);
@@ -92,6 +92,9 @@ TEST_CASE("a device can be opened once under any name, and again after it was di
   const std::string serial_number = hdGetString(HD_DEVICE_SERIAL_NUMBER);
   CHECK(serial_number.size() == 24);
   double position_mm[3]{};
+  double references_rad[3]{1, 1, 1};
+  hdGetDoublev(HD_JOINT_ANGLE_REFERENCES, references_rad);
+  for (const double reference_rad : references_rad) CHECK(reference_rad == 0.0);
   hdGetDoublev(HD_CURRENT_POSITION, position_mm);  // before the first frame
   CHECK(position_mm[2] == doctest::Approx(1e3 * board.position_m('z')).epsilon(0.02));
   hdDisableDevice(device);

@@ -44,6 +44,8 @@ class Devices {
   /// The current device of the calling thread. A thread without a selection uses the device that the program selected
   /// last.
   Handle current_handle() const;
+  /// Returns the handle of the first device until a device has been opened, then current_handle().
+  Handle current_or_first_handle() const { return handles_used_ == 0 ? 0 : current_handle(); }
   Device* current() { return find(current_handle()); }
   /// The returned pointer keeps the device open while the mutex is unlocked. If there is no current device, returns
   /// NULL and raises BAD_HANDLE.

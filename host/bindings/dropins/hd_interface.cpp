@@ -68,7 +68,11 @@ void hdMakeCurrentDevice(HdHandle device) {
   with_device(device, [&](Device&) { runtime().devices.make_current(device); });
 }
 
-HdHandle hdGetCurrentDevice(void) { return current_handle(); }
+// Before hdInitDevice(), some programs expect the handle that the first device will get.
+HdHandle hdGetCurrentDevice(void) {
+  const std::lock_guard lock(runtime().devices.mutex());
+  return runtime().devices.current_or_first_handle();
+}
 
 void hdBeginFrame(HdHandle handle) {
   with_device(handle, [&](Device& device) {

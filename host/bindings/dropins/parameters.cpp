@@ -126,6 +126,8 @@ const Parameter table[] = {
      read_joints},
     {0x2150, 0x2350, "CURRENT_GIMBAL_ANGLES", "rad", 3, type_real, "positive: right, down, clockwise",
      [](const Source& s, double* v) { put(pose(s).gimbal_rad, 1.0, v); }},
+    {0x2702, 0, "JOINT_ANGLE_REFERENCES", "rad", 3, type_real, "offsets of the joint angles, always 0",
+     [](const Source&, double* v) { std::fill_n(v, 3, 0.0); }},
 
     {0x2500, 0, "VERSION", "", 1, type_string, "HDAPI version 3.4.0; needs no device", nullptr,
      [](const Source&) { return std::string("3.4.0"); }, nullptr, false},
