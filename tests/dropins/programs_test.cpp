@@ -86,6 +86,25 @@ TEST_CASE(
   CHECK(run_program("inkwell", {"run", "--usbip", "127.0.0.1:1", "true"}).exit_code == 1);
 }
 
+TEST_CASE("`inkwell run` reports a program that loads another library or needs a library of the vendor's driver") {
+  Board board;
+  const std::string server = board.address.substr(6);
+  const auto other = run_program("inkwell", {"run", "--usbip", server, program("drop-in-uses-other-hd")});
+  INFO(other.err);
+  CHECK(other.exit_code == 3);
+  CHECK(other.err.find("other/libHD.so, not the library of this arm") != std::string::npos);
+  // The shell is the parent of the program.
+  const auto child =
+      run_program("inkwell", {"run", "--usbip", server, "sh", "-c", program("drop-in-uses-other-hd") + "; true"});
+  CHECK(child.err.find("other/libHD.so, not the library of this arm") != std::string::npos);
+  const auto own = run_program("inkwell", {"run", "--usbip", server, program("drop-in-as-chai3d")});
+  CHECK(own.exit_code == 0);
+  CHECK(own.err.find("not the library") == std::string::npos);
+  const auto driver = run_program("inkwell", {"run", "--usbip", server, program("drop-in-uses-vendor-driver")});
+  CHECK(driver.exit_code == 127);
+  CHECK(driver.err.find("needs libPhantomIOLib42.so, a library of the vendor's driver") != std::string::npos);
+}
+
 TEST_CASE("`inkwell run` passes signals on") {
   Board board;
   RunningProgram run({program("inkwell"), "run", "--usbip", board.address.substr(6), "sh", "-c",

@@ -6,18 +6,22 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "host/client/command_line/help.hpp"
 #include "host/client/installation/installed_paths.hpp"
+
+#include "host/companion/command_line/program_libraries.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -45,6 +49,44 @@ std::string environment(const char* name) {
 void say_which_device(const device::Endpoint& endpoint, const std::string& address) {
   fmt::print(stderr, "inkwell: the program uses the arm {} ({}){}.\n", endpoint.serial_number, address,
              endpoint.is_virtual ? ", a simulation" : "");
+}
+
+/// Exit code of a program for which the dynamic linker has not found a library.
+constexpr int library_missing = 127;
+
+/// Returns the status of the program. Prints a warning if the program loads another device library.
+int wait_for_end(pid_t process, const std::filesystem::path& libraries) {
+  using namespace std::chrono_literals;
+  constexpr auto first_checks = 40;
+  int status = 0;
+  for (int checks = 0;; ++checks) {
+    const pid_t ended = waitpid(process, &status, WNOHANG);
+    if (ended == process || (ended < 0 && errno != EINTR)) return status;
+    if (const auto library = loaded_device_library(process, libraries)) {
+      if (library->parent_path() != std::filesystem::canonical(libraries))
+        fmt::print(stderr,
+                   "inkwell: the program has loaded {}, not the library of this arm, so the program does not get the "
+                   "arm. A DT_RPATH of the program is searched before LD_LIBRARY_PATH. Remove it with `patchelf "
+                   "--remove-rpath`, or link the program with -Wl,--enable-new-dtags.\n",
+                   library->string());
+      break;
+    }
+    std::this_thread::sleep_for(checks < first_checks ? 50ms : 500ms);
+  }
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+void explain_missing_library(const std::string& program) {
+  for (const auto& library : needed_libraries(program))
+    if (is_vendor_driver(library))
+      fmt::print(
+          stderr,
+          "inkwell: {} needs {}, a library of the vendor's driver. Inkwell does not provide it, and its libHD.so "
+          "does not need it. Link the program without this library, or remove the entry with `patchelf "
+          "--remove-needed {}`.\n",
+          program, library, library);
 }
 
 int run(const DeviceOptions& options, std::vector<std::string> words) {
@@ -81,9 +123,8 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
   program_process = process;
   if (early_signal != 0) kill(process, early_signal);
 
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = wait_for_end(process, libraries);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == library_missing) explain_missing_library(words.front());
   return WIFSIGNALED(status) ? killed_by + WTERMSIG(status) : WEXITSTATUS(status);
 }
 

@@ -314,16 +314,16 @@ struct ObservedStarts {
     REQUIRE(board.bus.chip.debug_port().read(address, {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
     return values;
   }
-  /// Returns all addresses of these values in the core-coupled memory.
+  /// Returns all addresses of these values in SRAM2.
   std::vector<std::uint32_t> addresses_of(const std::vector<float>& values) {
-    std::vector<float> memory(virtual_board::ccm_bytes / sizeof(float));
+    constexpr std::uint32_t begin = virtual_board::sram_base + virtual_board::sram1_bytes;
+    std::vector<float> memory((virtual_board::sram_bytes - virtual_board::sram1_bytes) / sizeof(float));
     const auto bytes = std::as_writable_bytes(std::span(memory));
-    REQUIRE(board.bus.chip.debug_port().read(virtual_board::ccm_base,
-                                             {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
+    REQUIRE(board.bus.chip.debug_port().read(begin, {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
     std::vector<std::uint32_t> addresses;
     for (auto found = memory.begin();
          (found = std::search(found, memory.end(), values.begin(), values.end())) != memory.end(); ++found)
-      addresses.push_back(virtual_board::ccm_base +
+      addresses.push_back(begin +
                           static_cast<std::uint32_t>(sizeof(float) * static_cast<std::size_t>(found - memory.begin())));
     return addresses;
   }
