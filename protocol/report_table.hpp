@@ -28,17 +28,17 @@ enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
   X(command, 3, output, none, CommandReport, sizeof(CommandReport), sizeof(CommandReport), "A command. The report is also a sign of life.") \
   X(force, 8, output, none, ForceReport, sizeof(ForceReport), sizeof(ForceReport), "The force of a program. The report is also a sign of life.") \
   X(information, 4, feature, InformationReport, none, sizeof(InformationReport), 0, "The identity of the device and its counters.") \
-  X(parameters, 5, feature, ParametersReport, ParametersReport, sizeof(ParametersReport), parameters_report_size(0), "Every parameter. Set: one transaction.") \
+  X(parameters, 5, feature, ParametersReport, ParametersReport, sizeof(ParametersReport), parameters_report_size(0), "A read returns every parameter. A write changes parameters in one transaction.") \
   X(transaction, 6, feature, TransactionReport, none, sizeof(TransactionReport), 0, "The result of the last transaction.") \
   X(frame, 7, feature, FrameReport, none, sizeof(FrameReport), 0, "The start of the newest bus frame in board time.")   \
   X(shapes, 9, feature, none, ShapesReport, sizeof(ShapesReport), shapes_report_size(0), "The new shapes, which replace all previous shapes.") \
   X(force_law, 10, feature, ForceLawReport, none, force_law_report_maximum, 0, "The parameters and signals that the force law of the image adds to the tables. The report header contains the report size.") \
   X(black_box, 11, feature, BlackBoxReport, none, sizeof(BlackBoxReport), 0, "The state and the fault of the black box, and the crash record of the firmware.") \
-  X(black_box_rows, 12, feature, BlackBoxRowsReport, BlackBoxRequest, sizeof(BlackBoxRowsReport), sizeof(BlackBoxRequest), "Rows of the black box. Set: the first requested row.") \
+  X(black_box_rows, 12, feature, BlackBoxRowsReport, BlackBoxRequest, sizeof(BlackBoxRowsReport), sizeof(BlackBoxRequest), "A read returns rows of the black box. A write selects the first row.") \
   X(self_test, 13, feature, SelfTestReport, none, sizeof(SelfTestReport), 0, "The results of the self-test.")          \
   X(store, 14, feature, StoreReport, none, sizeof(StoreReport), 0, "The contents of the parameter store, and the result of the last store or erase command.") \
   X(stored, 15, feature, ParametersReport, none, sizeof(ParametersReport), 0, "The value of every parameter after the next start.") \
-  X(driver, 16, feature, DriverReport, ClaimReport, std::max(sizeof(DriverReport), sizeof(ClaimReport)), sizeof(ClaimReport), "The program that drives the arm. Set: a claim.") \
+  X(driver, 16, feature, DriverReport, ClaimReport, std::max(sizeof(DriverReport), sizeof(ClaimReport)), sizeof(ClaimReport), "A read returns the program that drives the arm. A write claims, releases or takes over the arm.") \
   X(request_results, 17, feature, RequestResultsReport, none, sizeof(RequestResultsReport), 0, "The results of the newest commands and shapes.")
 // clang-format on
 

@@ -24,7 +24,7 @@ inline constexpr std::string_view wiper = "The wiper of the gimbal potentiometer
 inline constexpr std::string_view wiper_remedy =
     "Check the three wires of the potentiometer. The force does not depend on the potentiometer, but this gimbal angle "
     "is wrong.";
-inline constexpr std::string_view motor = "Short voltage pulses cause the current that the motor resistance predicts.";
+inline constexpr std::string_view motor = "The motor current during short voltage pulses matches the motor resistance.";
 inline constexpr std::string_view motor_remedy =
     "If the resistance is too high, check the half bridges, and the wires and brushes of the motor. If the resistance "
     "is too low, the winding may be shorted. In both cases check the shunt, its amplifier, and motor_resistance_n_ohm, "

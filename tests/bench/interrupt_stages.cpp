@@ -37,8 +37,8 @@ class PressedBoard {
     device_ = device::Device::open(*endpoint);
   }
 
-  /// Presses the probe into three walls and moves it out again. Returns the largest total duration, then the largest
-  /// duration of each stage.
+  /// Presses the probe against three walls, then moves the probe back. Returns the largest total duration and the
+  /// largest duration of each stage.
   std::array<float, stage_count> press() {
     run(0.5);  // the encoders are referenced
     std::vector<Signal> signals;
@@ -102,9 +102,9 @@ void print_interrupt_stages() {
   PressedBoard likely(device::CyclePricing::likely);
   PressedBoard conservative(device::CyclePricing::conservative, INKWELL_BUILD_DIRECTORY "/interrupt.profile");
   const auto likely_cycles = likely.press(), conservative_cycles = conservative.press();
-  std::printf("Control interrupt on the virtual board (simulation), pressed into three walls, %zu signals:\n",
-              selected);
-  std::printf("the longest of each stage, in cycles of %u\n", board::servo_cycles);
+  std::printf("Control interrupt on the virtual board (simulation) with %zu signals.\n", selected);
+  std::printf("The probe presses against three walls. A control period has %u cycles.\n", board::servo_cycles);
+  std::printf("Longest duration of each stage in cycles:\n");
   std::printf("  %-22s %6s %12s\n", "", "likely", "conservative");
   for (std::size_t i = 0; i < stage_count; ++i) {
     const auto& row = protocol::signal_table[first_stage + i];

@@ -111,8 +111,9 @@ int write(const DeviceOptions& options, const FlashOptions& given, const NewImag
 int flash(const DeviceOptions& options, FlashOptions given) {
   if (options.is_virtual)
     throw UsageError(
-        "`inkwell --virtual flash` would write to a board that exits with this command. Use `inkwell flash --virtual "
-        "FILE` for the flash file of a virtual board, or --usbip HOST:PORT for a running virtual board.");
+        "The firmware cannot be written to the virtual board of `inkwell --virtual flash`, because this board exits "
+        "after the command. Use `inkwell flash --virtual FILE` for the flash file of a virtual board, or --usbip "
+        "HOST:PORT for a running virtual board.");
   if (!given.board.empty()) {
     given.image = installation::firmware(board::image_name(*board::find_board(given.board)));
   } else if (given.image.empty()) {

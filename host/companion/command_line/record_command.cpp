@@ -223,8 +223,9 @@ void add_record_command(const CommandContext& context) {
       ->required();
   auto* signals =
       command
-          ->add_option("--signals", record_options->signals,
-                       "Comma-separated names from `inkwell signals`. Default: the signals of replay and plots")
+          ->add_option(
+              "--signals", record_options->signals,
+              "Comma-separated names from `inkwell signals`. The default has the\nsignals that replay and plots need")
           ->type_name("NAMES");
   command
       ->add_flag("--all", record_options->all, "All signals from the encoders to the duty cycles; not with --signals")
