@@ -16,7 +16,7 @@ protocol::RequestResultsReport RequestResults::report(protocol::State state, std
   report.time_periods = now_periods;
   for (std::size_t i = 0; i < requests_.size(); ++i) {
     report.entries[i] = requests_[i].entry;
-    // The control interrupt has executed a removed command before the main loop continues.
+    // The control interrupt removes and executes a command in one call, so each removed command has been executed.
     if (report.entries[i].result == RequestResult::waiting && queue_.was_taken(requests_[i].pushed))
       report.entries[i].result = RequestResult::carried_out;
   }

@@ -1,7 +1,7 @@
 // Memory location of interrupt code.
 #pragma once
 
-/// Place this mark before the definition of a function that an interrupt calls. The mark places the function in the
+/// Every function that runs in an interrupt needs this mark before its definition. The mark places the function in the
 /// section .interrupt_text (boards/facts/stm32f405.ld). Start-up copies .interrupt_text to RAM. The tool
 /// tools/check/check_image.py rejects interrupts that call code outside .interrupt_text. The tool rejects functions in
 /// .interrupt_text that no interrupt calls. All code of firmware/control is in .interrupt_text and needs no marks. On a

@@ -42,10 +42,10 @@ class SampleRing {
 
   // ---- control interrupt ----
 
-  /// Slot for the sample of this period. The sample is valid after record().
+  /// Returns the slot for the sample of this period. The interrupt fills the slot and then calls record().
   Sample& next() { return samples_[recorded_.load() % capacity]; }
 
-  /// Records the sample in next(). Call this function once per control period.
+  /// Makes the sample of this period visible to the main loop.
   void record() { recorded_.store(recorded_.load() + 1); }
 
   // ---- main loop ----

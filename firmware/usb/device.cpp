@@ -25,8 +25,8 @@ constexpr float pose_replacing_s = 8e-6f;
 /// shortly before the start of frame.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
-/// Time between the loading of the spare pose and the loading of the final pose. The host reads the spare pose if the
-/// main loop is late. A transaction of all parameters causes the longest delay, 0.3 ms including control interrupts.
+/// Time between the loading of the spare pose and the loading of the final pose. A transaction of all parameters
+/// delays the main loop by up to 0.3 ms, including control interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
 /// After 0.1 s of unread reports, the device assumes that the host does not poll. Without a polling host, unread
@@ -189,9 +189,9 @@ void Device::restart(Endpoint& endpoint) {
   }
 }
 
-// The host may poll directly after each start of frame. The pose is loaded near the end of each bus frame. The device
-// loads the newest pose that is available in time. A spare pose is loaded earlier, because the main loop may be
-// delayed.
+// The host may poll directly after each start of frame. Near the end of each bus frame, the device loads the newest
+// pose. The device loads a spare pose `spare_pose_lead_s` earlier. If the main loop is late, the host reads the spare
+// pose.
 void Device::send_pose() {
   const std::optional<BusFrame> bus_frame = port_.bus_frame();
   Endpoint& endpoint = endpoints_[hid_in];

@@ -17,7 +17,7 @@ namespace {
 
 using recording::Handle;
 
-/// Chooses options from the input bytes. When the input is used up, each choice is 0, the option of a valid recording.
+/// Chooses options from the input bytes. Missing input bytes count as 0. A recording is valid if all choices are 0.
 class Choices {
  public:
   explicit Choices(Input left) : left_(left) {}

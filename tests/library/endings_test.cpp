@@ -120,7 +120,7 @@ struct Watched : Board {
   /// Checks the effect of the command. The program must not leave any state on the board except the effect of the
   /// command.
   void check(const std::string& command) {
-    // Poses from before the command may arrive after the program has exited.
+    // The first received poses may be older than the command.
     for (int i = 0; i < 1'000 && newest().state != INKWELL_READY; ++i) continue;
     CHECK(newest().state == INKWELL_READY);
     driver.reset();

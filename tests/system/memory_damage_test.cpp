@@ -57,8 +57,8 @@ std::uint32_t stored_force_limit() { return held_force_limit() + std::uint32_t{s
 }  // namespace
 
 TEST_CASE("a bit flip in the code or vectors of interrupts switches the force off, and a reset restores the memory") {
-  // The firmware does not use these locations while the hand presses. The memory check detects each error before the
-  // error has an effect.
+  // The firmware does not use these memory addresses while the hand presses the stylus. The memory check detects each
+  // error before the error has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t addresses[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
                                      firmware_symbol("remove_idle_torque"), firmware_symbol("nowhere")};

@@ -63,7 +63,7 @@ TEST_CASE(
   for (std::uint8_t id = 0; id < 31; ++id) signals.push_back(static_cast<Signal>(id));
   rig.device->select_signals(signals);
   rig.take_to(free_point_m);
-  // The probe moves inside three walls.
+  // The probe presses against three walls.
   rig.set(
       {{Parameter::box_minimum_z_m, -0.02f}, {Parameter::box_maximum_x_m, 0.0f}, {Parameter::box_maximum_y_m, 0.0f}});
   rig.take_to({0.02, 0.02, -0.045}, 0.3);

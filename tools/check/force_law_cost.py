@@ -131,7 +131,7 @@ class Bound:
         calls = self.calls(function)
         dearest: dict[int, int] = {}
         for address, text in reversed(function.instructions):
-            # A jump to a lower address is possible without a loop. The code at the lower address is visited first.
+            # Not every jump to a lower address forms a loop. visit() first determines the cost of the jump target.
             self.visit(address, dict(function.instructions), paths, calls, callers, dearest)
         return dearest[addresses[0]]
 

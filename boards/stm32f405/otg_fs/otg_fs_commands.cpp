@@ -11,7 +11,7 @@ namespace inkwell::virtual_board {
 namespace {
 
 constexpr Ticks transceiver_clock = ticks_per_s / 48'000'000;
-/// A flush lasts eight cycles of the slower clock, PHY or AHB (RM0090, OTG_FS reset register).
+/// A FIFO flush lasts eight PHY clock cycles (RM0090, OTG_FS reset register).
 constexpr Ticks command_duration = 8 * transceiver_clock;
 /// The manual states no duration for a core reset, but requires the firmware to poll CSRST.
 constexpr Ticks core_reset_duration = ticks_per_s / 1'000'000;

@@ -91,8 +91,7 @@ class Fetch {
     for (; fetched_to_ < address + bytes; fetched_to_ += 4) ++waited;
     return waited;
   }
-  /// Advances the fetch by the `cycles` of an executed instruction. Each of the `delays` takes one cycle from the
-  /// fetch.
+  /// Advances the fetch while an instruction executes for `cycles`. The fetch pauses for one cycle per delay.
   void run(std::uint32_t address, unsigned cycles, unsigned delays) {
     cycles -= std::min(cycles, delays);
     const std::uint32_t limit = (address & ~3u) + fetch_buffer_bytes;
@@ -108,7 +107,7 @@ unsigned accesses_of(const Instruction& it) {
   return it.words != 0 ? it.words : 1;
 }
 
-/// Accesses of the instruction that delay the instruction fetch, because both use the same bus or the same memory.
+/// Returns the number of cycles by which data accesses delay the instruction fetch.
 unsigned fetch_delays_of(const Instruction& it, CodeMemory memory, const Costs& costs) {
   switch (memory) {
     case CodeMemory::flash: return 0;
@@ -119,7 +118,7 @@ unsigned fetch_delays_of(const Instruction& it, CodeMemory memory, const Costs& 
   return 0;
 }
 
-/// One pass over the instructions of a block. Fills `block`, or only counts the cycles if `block` is null.
+/// Counts the cycles of a block. Fills `block` unless `block` is null.
 class Walk {
  public:
   Walk(std::span<const std::uint8_t> code, std::uint32_t address, CodeMemory memory, const Costs& costs,

@@ -37,7 +37,7 @@ struct BridgeWire {
       ++wrong_readings;
   }
 
-  /// Returns true after too many consecutive readings of a wrong wire level.
+  /// Returns true if the wire level was wrong in more than `tolerated_readings` consecutive readings.
   constexpr bool is_shorted() const { return wrong_readings > tolerated_readings; }
 };
 

@@ -44,9 +44,9 @@ struct StuckEncoder {
   float most_A = 0.0f;
   unsigned changes = 0;  ///< number of current changes in this standstill
 
-  /// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current
-  /// changes of more than `moving_A` while the encoder was stationary. If `held` is true, the standstill time
-  /// restarts.
+  /// Checks an encoder and the current of its motor at period `now_periods`. Returns true if the motor current has
+  /// changed three times by more than `moving_A` while the encoder was stationary. If `held` is true, the standstill
+  /// time restarts.
   bool detect_stuck_encoder(std::int32_t now_counts, float now_A, std::uint32_t now_periods, bool held,
                             float moving_A) {
     current_A += weight * (now_A - current_A);

@@ -34,7 +34,7 @@ class BootLoader {
 
   explicit BootLoader(device::ControlChannel& channel) : channel_(channel) {}
 
-  /// Makes the boot loader idle from any state and reads the flash sectors.
+  /// Puts the boot loader into the idle state. Then reads the list of flash sectors.
   void start();
   const std::vector<Sector>& sectors() const { return sectors_; }
 

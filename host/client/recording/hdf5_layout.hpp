@@ -4,18 +4,19 @@
 //                          serial_number, arm, force_law (as sent by the device, in hexadecimal digits), simulation,
 //                          servo_rate_Hz, step_periods (control periods from one sample to the next).
 //   `/parameters/NAME`     scalar float, attributes unit and help.
-//   `/period`              int64[N], control period of each sample (wrapping uint32 in files of earlier versions).
+//   `/period`              int64[N], control period of each sample.
 //   `/time_s`              float64[N].
 //   `/signals/NAME`        float32[N], attributes unit and help.
 //   `/simulated/NAME`      float32[N], attributes unit and help: quantities of a simulation, if available.
-//   `/marks/period`        int64[M] (wrapping uint32 in files of earlier versions).
-//   `/marks/text`          text[M] of fixed length with UTF-8 bytes
-//                          (shorter and marked as UTF-8 in files of earlier versions).
+//   `/marks/period`        int64[M], control period of each mark.
+//   `/marks/text`          text[M], UTF-8 with a fixed length in bytes.
 //   `/marks/kind`          text[M]: mark of the user, connection, force, fault, parameter, loss.
-//   `/marks/clock_utc`     text[M]: time of the computer, ISO 8601 with milliseconds
-//                          (kind and clock_utc are not in files of earlier versions).
+//   `/marks/clock_utc`     text[M]: time of the computer, ISO 8601 with milliseconds.
 //   `/samples`             uint64, number of samples that are completely on disk; a column may be longer after a crash.
 //   `/complete`            int32, 1 once the recording is complete.
+//
+// In files of earlier versions, control periods are uint32 values that wrap. These files contain no `/marks/kind` and
+// no `/marks/clock_utc`.
 #pragma once
 
 #include <cstddef>

@@ -31,8 +31,7 @@ class Overlay {
   std::int64_t shift_periods_ = 0;    ///< start of the overlaid recording, in periods of the base
 };
 
-/// Returns distinct names for two recordings. The names are file names, with folders or extensions if the file names
-/// are equal.
+/// Returns distinct names for two recordings.
 std::pair<std::string, std::string> distinct_names(const std::filesystem::path& one,
                                                    const std::filesystem::path& other);
 

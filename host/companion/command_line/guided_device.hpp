@@ -1,4 +1,3 @@
-// The session and the received scope frames of a guide.
 #pragma once
 
 #include <memory>
@@ -16,6 +15,7 @@ namespace inkwell::command_line {
 /// Time limit for a parameter change.
 inline device::BoardTimeout transaction_limit() { return {5.0, std::chrono::seconds(5)}; }
 
+/// Connection to the device that a guide uses.
 class GuidedDevice {
  public:
   /// Connects to the selected device. With --arm, sets the parameters of the arm description. With --virtual, a

@@ -24,7 +24,7 @@ inline control::Settings settings_near_wall() {
   return control::prepare(set);
 }
 
-/// An Omni with a force limit of 8 N. The inkwell is at a depth of `depth_m` in each of three walls.
+/// An Omni with a force limit of 8 N. At the inkwell, the probe penetrates three walls by `depth_m`.
 inline protocol::ParameterSet pressed_into_three_walls(const control::Vector3& depth_m, float stiffness_N_per_m) {
   using enum protocol::Parameter;
   protocol::ParameterSet set = omni_parameters();

@@ -1,5 +1,5 @@
-// Executes a command through the window's code without a display. The window executes the requested command before it
-// closes. Usage: window_ending COMMAND exit|wait
+// Requests a command through the window's DeviceDesk. The destructor of DeviceDesk sends the command.
+// Usage: window_ending COMMAND exit|wait
 #include <unistd.h>
 
 #include <chrono>
