@@ -39,6 +39,19 @@ assert(table(strcmp({table.name}, 'force_limit_N')).unit, 'N');
 refused(@() inkwell_parameters(arm, 'wall_stifness_N_per_m'), 'Did you mean wall_stiffness_N_per_m?');
 refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', NaN), 'wall_stiffness_N_per_m');
 refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', [1 2]), 'as many values');
+inkwell_parameters(arm, {'wall_stiffness_N_per_m', 'wall_damping_Ns_per_m'}, sparse([700 0]));
+assert(inkwell_parameters(arm, 'wall_damping_Ns_per_m'), 0);
+inkwell_parameters(arm, {'wall_stiffness_N_per_m', 'wall_damping_Ns_per_m'}, single([500 1.5]));
+assert(inkwell_parameters(arm, 'wall_damping_Ns_per_m'), 1.5);
+
+% Text is not a number: it would count as character codes.
+refused(@() inkwell_force(arm, 'abc'), 'is text. Three numbers are required');
+refused(@() inkwell_hand(arm, 'abc'), 'is text. Three numbers are required');
+refused(@() inkwell_hand(arm, [0 0 0], 'd'), 'not a number');
+refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', 'd'), 'not a number');
+refused(@() inkwell_enable(arm, 'n'), 'not a number');
+refused(@() inkwell_sleep(arm, 'd'), 'The duration is not valid');
+refused(@() inkwell_open('virtual', '7'), 'The seed is not valid');
 
 % Stored parameters.
 assert(inkwell_store(arm, 'state').not_stored, 2);
@@ -88,6 +101,9 @@ inkwell_enable(arm);
 refused(@() inkwell_force(arm, [NaN 0 0]), 'not a finite number');
 refused(@() inkwell_force(arm, [0 -Inf 0]), 'not a finite number');
 refused(@() inkwell_force(arm, [1 2]), 'Three numbers');
+for zero = {int32([0 0 0]), single([0; 0; 0]), sparse([0 0 0])}
+  inkwell_force(arm, zero{1});
+end
 pose = inkwell_pose(arm);
 begin_s = pose.time_s;
 while abs(pose.position_m(1) - 0.005) > 0.0007 || abs(pose.velocity_m_s(1)) > 0.005
@@ -154,15 +170,53 @@ assert(diff(recording.time_s), ones(1, 3999) / 20000, 1e-9);
 assert(strtrim(recording.marks.text), 'touch');
 assert(any(recording.period == recording.marks.period));  % on a busy computer the mark comes after the first sample
 
-% The example finds the waist friction of the simulation: 0.010 Nm at the probe's lever arm, in addition to the hand's
-% spring.
+% The example releases the stylus and finds the waist friction of the simulation: 0.010 Nm at the probe's lever arm.
 graphics_toolkit('gnuplot');
 picture = [tempname() '.png'];
 found = identify_friction(arm, picture);
-assert(found.stiffness_N_per_m, 300, 45);
-assert(found.coulomb_N > 0.02 && found.coulomb_N < 0.2, 'coulomb_N is %g', found.coulomb_N);
+assert(abs(found.stiffness_N_per_m) < 20, 'stiffness_N_per_m is %g', found.stiffness_N_per_m);
+assert(found.coulomb_N > 0.05 && found.coulomb_N < 0.12, 'coulomb_N is %g', found.coulomb_N);
 assert(stat(picture).size > 1000);
 delete(picture);
+
+% The example refuses to identify a hand that another program controls.
+ready = tempname();
+fclose(fopen(ready, 'w'));
+assert(system(sprintf('%s/virtual-board --elf %s/../board/inkwell.elf --real-time > %s 2> /dev/null &', ...
+                      programs, programs, ready)), 0);
+do
+  pause(0.05);
+  ports = sscanf([fileread(ready) ' '], 'ready usbip=%d control=%d\n');
+until numel(ports) == 2
+delete(ready);
+function control(port, command)
+  talk = sprintf('exec 3<>/dev/tcp/127.0.0.1/%d; echo "$1" >&3; head -n 1 <&3', port);
+  [status, reply] = system(sprintf("bash -c '%s' _ '%s'", talk, command));
+  assert(status == 0 && ! isempty(strfind(reply, 'true')), reply);
+end
+control(ports(2), '{"command": "dock", "docked": true}');
+held = inkwell_open(sprintf('usbip:127.0.0.1:%d', ports(1)));
+do
+  pose = inkwell_pose(held);
+until strcmp(pose.state, 'ready')
+inkwell_parameters(held, {'host_timeout_s', 'program_force_expiry_s'}, [2 0.5]);
+control(ports(2), ['{"command": "hand", "holds": true, "target_m": [0, 0, -0.03], "stiffness_N_per_m": 300, ' ...
+                   '"damping_Ns_per_m": 3}']);
+control(ports(2), '{"command": "dock", "docked": false}');
+inkwell_sleep(held, 1);
+refused(@() identify_friction(held, picture), 'A hand holds the stylus');
+inkwell_close(held);
+control(ports(2), '{"command": "quit"}');
+
+% A program in a new home folder prints nothing when it exits.
+home = tempname();
+mkdir(home);
+[status, said] = system(sprintf(['env -u XDG_DATA_HOME HOME=%s %s/bin/octave-cli --norc --path %s ' ...
+                                 '--eval "inkwell_close(inkwell_open(''virtual''))" 2>&1'], ...
+                                home, OCTAVE_EXEC_HOME, fileparts(which('inkwell_mex'))));
+rmdir(home, 's');
+assert(status, 0);
+assert(said, '');
 
 % A forked child cannot use its parent's arm.
 parent = getpid();

@@ -4,5 +4,5 @@ function inkwell_enable(arm, on)
   if nargin < 2
     on = true;
   end
-  inkwell_mex('enable', arm, double(on));
+  inkwell_mex('enable', arm, on);
 end

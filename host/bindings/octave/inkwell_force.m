@@ -4,5 +4,5 @@ function inkwell_force(arm, force_N)
 %
 % After a fault, another program or a lost link has switched the force off, each call raises an error with the cause. The
 % error identifier is 'inkwell:force_lost'. inkwell_enable switches the force on again.
-  inkwell_mex('force', arm, double(force_N));
+  inkwell_mex('force', arm, force_N);
 end

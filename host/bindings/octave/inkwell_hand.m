@@ -9,6 +9,6 @@ function inkwell_hand(arm, target_m, stiffness_N_per_m)
     if nargin < 3
       stiffness_N_per_m = 300;
     end
-    inkwell_mex('hand', arm, double(target_m), double(stiffness_N_per_m));
+    inkwell_mex('hand', arm, target_m, stiffness_N_per_m);
   end
 end

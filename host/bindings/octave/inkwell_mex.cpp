@@ -55,17 +55,35 @@ std::vector<const char*> pointers(const std::vector<std::string>& names) {
   return pointers;
 }
 
-double number(const mxArray* value) {
-  if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 1)
+/// Returns the values of a numeric or logical array. Text is refused: it would be converted to character codes.
+std::vector<double> numbers(const mxArray* value) {
+  if (!(mxIsNumeric(value) || mxIsLogical(value)) || mxIsComplex(value))
     throw Wrong("An argument is not a number. Give a number.");
-  return mxGetScalar(value);
+  const bool is_plain = mxIsDouble(value) && !mxIsSparse(value);
+  mxArray* converted = const_cast<mxArray*>(value);
+  if (!is_plain) {
+    mxArray* real = nullptr;
+    mexCallMATLAB(1, &real, 1, &converted, "double");
+    mexCallMATLAB(1, &converted, 1, &real, "full");
+    mxDestroyArray(real);
+  }
+  const double* first = mxGetPr(converted);
+  const std::vector<double> copy(first, first + mxGetNumberOfElements(converted));
+  if (!is_plain) mxDestroyArray(converted);
+  return copy;
+}
+
+double number(const mxArray* value) {
+  const auto values = numbers(value);
+  if (values.size() != 1) throw Wrong("An argument is not a number. Give a number.");
+  return values[0];
 }
 
 inkwell::Vector vector(const mxArray* value) {
-  if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 3)
-    throw Wrong("An argument is not a vector. Three numbers are required, [x y z].");
-  const double* numbers = mxGetPr(value);
-  return {numbers[0], numbers[1], numbers[2]};
+  if (mxIsChar(value)) throw Wrong("An argument is text. Three numbers are required, [x y z].");
+  const auto values = numbers(value);
+  if (values.size() != 3) throw Wrong("An argument is not a vector. Three numbers are required, [x y z].");
+  return {values[0], values[1], values[2]};
 }
 
 std::map<int, inkwell_arm*>::iterator find(const Arguments& arguments) {
@@ -239,10 +257,10 @@ Answers get(const Arguments& arguments) {
 
 Answers set(const Arguments& arguments) {
   const auto names = texts(argument(arguments, 1));
-  const mxArray* values = argument(arguments, 2);
-  if (!mxIsDouble(values) || mxIsComplex(values) || mxGetNumberOfElements(values) != names.size())
+  const auto values = numbers(argument(arguments, 2));
+  if (values.size() != names.size())
     throw Wrong("The numbers of names and values differ. Give as many values as names.");
-  require(inkwell_set_parameters(find(arguments)->second, pointers(names).data(), mxGetPr(values), names.size()));
+  require(inkwell_set_parameters(find(arguments)->second, pointers(names).data(), values.data(), names.size()));
   return {};
 }
 

@@ -17,7 +17,13 @@ function arm = inkwell_open(address, seed)
     if ~strcmp(address, 'virtual')
       error('inkwell:refused', 'A seed requires a simulated arm. Give the address ''virtual''.');
     end
+    if ~(isnumeric(seed) && isscalar(seed))
+      error('inkwell:refused', 'The seed is not valid. Give a whole number of 0 or more.');
+    end
     address = sprintf('virtual?seed=%d', seed);
+  end
+  if exist('OCTAVE_VERSION', 'builtin') && ~isfolder(fileparts(fileparts(history_file())))
+    history_save(false);  % Octave cannot create this folder, and would print an error when it exits
   end
   arm = inkwell_mex('open', address);
 end

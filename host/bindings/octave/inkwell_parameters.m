@@ -8,6 +8,6 @@ function result = inkwell_parameters(arm, names, values)
   elseif nargin < 3
     result = inkwell_mex('get', arm, names);
   else
-    inkwell_mex('set', arm, names, double(values));
+    inkwell_mex('set', arm, names, values);
   end
 end

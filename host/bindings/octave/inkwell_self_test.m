@@ -13,5 +13,5 @@ function items = inkwell_self_test(arm, which)
   if only_last && ~strcmp(which, 'last')
     error('inkwell:refused', 'There is no such self-test. Give ''last'' or nothing.');
   end
-  items = inkwell_mex('self_test', arm, double(only_last));
+  items = inkwell_mex('self_test', arm, only_last);
 end
