@@ -4,12 +4,17 @@
 """
 
 import ast
+import copy
 import gc
 import inspect
 import math
+import multiprocessing
 import os
 import pathlib
+import pickle
 import pydoc
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -76,6 +81,120 @@ class Storing(unittest.TestCase):
         parameters.factory_reset()
         self.assertEqual(parameters.wall_stiffness_N_per_m, default_N_per_m)
         self.assertEqual(parameters.store_state().contents, inkwell.Stored.FACTORY_RESET)
+
+
+class Records(unittest.TestCase):
+    """Records are values: they can be compared, copied and sent to other processes."""
+
+    @classmethod
+    def setUpClass(cls):
+        with inkwell.open("virtual") as arm:
+            arm.set_force((0, 0, 0))
+            cls.records = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver, *arm.self_test()]
+            cls.later = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver]
+            cls.samples = arm.capture("supply_V", duration_s=0.01)
+        with mock.patch.dict(os.environ, INKWELL_DEVICE="virtual"):
+            cls.records.append(inkwell.devices()[-1])
+        cls.enumerations = [inkwell.State.READY, inkwell.ForceMode.BESIDE_WALLS, inkwell.Stored.NOTHING,
+                            inkwell.Test.PASSED]
+
+    @staticmethod
+    def attributes(record):
+        return {name: np.asarray(getattr(record, name)).tolist() for name in dir(record) if not name.startswith("_")}
+
+    def test_each_class_is_tested(self):
+        native = {kind for kind in vars(_native).values() if inspect.isclass(kind)} - {_native.Arm}
+        self.assertEqual({type(each) for each in self.records + self.enumerations}, native)
+
+    def test_copies_and_pickles_equal_the_original(self):
+        ways = [copy.copy, copy.deepcopy]
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            ways.append(lambda record, protocol=protocol: pickle.loads(pickle.dumps(record, protocol)))
+        for record in self.records + self.enumerations:
+            for way in ways:
+                copied = way(record)
+                self.assertIs(type(copied), type(record))
+                self.assertTrue(copied == record and not copied != record, record)
+                self.assertEqual(hash(copied), hash(record))
+                if record in self.records:
+                    self.assertEqual(self.attributes(copied), self.attributes(record))
+
+    def test_records_differ_from_others(self):
+        self.assertNotEqual(self.records[0], self.later[0])
+        self.assertEqual(len({*self.records}), len(self.records))
+        self.assertNotEqual(self.records[0], None)
+        self.assertFalse(self.records[0] == 3)
+        self.assertEqual(self.records[3].program, self.later[3].program)
+
+    def test_a_member_that_is_not_a_number_equals_its_copy(self):
+        state = list(self.records[0].__getstate__())
+        state[-1] = math.nan
+        pose = inkwell.Pose.__new__(inkwell.Pose)
+        pose.__setstate__(tuple(state))
+        self.assertTrue(math.isnan(pose.supply_V))
+        self.assertEqual(pickle.loads(pickle.dumps(pose)), pose)
+
+    def test_each_record_has_a_readable_repr(self):
+        for record in self.records:
+            self.assertNotIn("object at 0x", repr(record))
+        self.assertRegex(repr(self.records[1]), r"^<inkwell.Information product='Inkwell haptic arm', serial_number='\w+', .*"
+                                                r"servo_rate_Hz=20000.0, .*motor_heat=array\(.*\)>$")
+        self.assertRegex(repr(self.records[2]), r"^<inkwell.Store contents=<Stored.NOTHING: 0>, not_stored=0, .*>$")
+
+    def test_a_record_of_another_version_is_refused(self):
+        for wrong in ((), (1, 2), ("",) * 16):
+            with self.assertRaisesRegex(ValueError, "This Pose was stored by another version"):
+                inkwell.Pose.__new__(inkwell.Pose).__setstate__(wrong)
+
+    def test_processes_exchange_records(self):
+        for method in "fork", "spawn":
+            context = multiprocessing.get_context(method)
+            questions, answers = context.Queue(), context.Queue()
+            process = context.Process(target=send_back, args=(questions, answers, len(self.records)))
+            process.start()
+            for record in self.records:
+                questions.put(record)
+                self.assertEqual(answers.get(timeout=60), record)
+            process.join()
+
+    def test_samples_are_compared_by_their_values(self):
+        self.assertEqual(copy.deepcopy(self.samples), self.samples)
+        other = copy.deepcopy(self.samples)
+        other.values[0] += 1
+        self.assertNotEqual(other, self.samples)
+        self.assertNotEqual(self.samples, None)
+
+
+def send_back(questions, answers, count):
+    for _ in range(count):
+        answers.put(questions.get())
+
+
+class Import(unittest.TestCase):
+    """An import that fails names its cause and the remedy."""
+
+    def raised(self, folder, *options):
+        paths = [path for path in os.environ["PYTHONPATH"].split(os.pathsep) if not (pathlib.Path(path) / "numpy").exists()]
+        said = subprocess.run([sys.executable, *options, "-c", "import inkwell"], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), *paths])})
+        self.assertEqual(said.returncode, 1)
+        return said.stderr.splitlines()[-1]
+
+    def test_another_python(self):
+        with tempfile.TemporaryDirectory() as folder:
+            package = pathlib.Path(folder, "inkwell")
+            shutil.copytree(pathlib.Path(inkwell.__file__).parent, package)
+            module, = package.glob("_native.*.so")
+            module.rename(package / re.sub(r"cpython-\d+", "cpython-399", module.name))
+            running = re.escape(f"this is Python {sys.version_info[0]}.{sys.version_info[1]} ({sys.executable}). ")
+            self.assertRegex(self.raised(folder), rf"^ImportError: The package inkwell in .* was built for Python 3.99, but "
+                                                  rf"{running}Start python3.99, or .* -DINKWELL_PYTHON={sys.executable}\.$")
+            next(package.glob("_native.*.so")).unlink()
+            self.assertRegex(self.raised(folder), r"^ImportError: .* has no native module\. Build it with tools/build\.$")
+
+    def test_no_numpy(self):
+        self.assertRegex(self.raised(pathlib.Path(inkwell.__file__).parents[1], "-S"),
+                         r"^ModuleNotFoundError: .* requires numpy, which is not installed for Python .* python3-numpy, or")
 
 
 class Reading(unittest.TestCase):
@@ -430,6 +549,33 @@ class Programs(unittest.TestCase):
                                       ("virtual:/no/such/arm.toml", inkwell.Failed, "/no/such/arm.toml")):
             with self.subTest(address), self.assertRaisesRegex(error, words):
                 inkwell.open(address)
+
+    def test_a_virtual_board_with_options(self):
+        root = pathlib.Path(__file__).parents[2]
+        options = {"arm": root / "boards/arms/paper.toml", "elf": str(BUILD.parent / "board/magnet.elf"), "seed": 7}
+        with inkwell.open("virtual", **options) as arm:
+            x_m = wait_until(arm, lambda pose: pose.state == inkwell.State.READY).position_m[0]
+            samples = arm.capture("supply_V", duration_s=0.01)
+            self.assertGreater(x_m, 0.1)  # the inkwell of the Omni is at x = 0
+            self.assertIn("magnet_strength_N", arm.parameters)
+        with inkwell.open("virtual?seed=7", arm=options["arm"], elf=options["elf"]) as arm:
+            wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
+            self.assertEqual(arm.capture("supply_V", duration_s=0.01), samples)
+
+    def test_options_that_no_virtual_board_accepts(self):
+        for address, options, error, words in (
+                ("virtual", {"elf": "no/such.elf"}, inkwell.Failed, "firmware no/such.elf is missing"),
+                ("virtual", {"arm": "no/such.toml"}, inkwell.Failed, "no/such.toml: this arm description cannot be read"),
+                ("virtual", {"arm": 5}, TypeError, "option arm is 5. Give the name of a file"),
+                ("virtual", {"elf": ""}, inkwell.BadArgument, "option elf is ''"),
+                ("virtual", {"arm": "a&b.toml"}, inkwell.BadArgument, "without the character &"),
+                ("virtual:a.toml", {"arm": "b.toml"}, inkwell.BadArgument, "arm is given twice"),
+                ("virtual?seed=3", {"seed": 4}, inkwell.BadArgument, "seed is given twice"),
+                ("virtual", {"seed": -1}, inkwell.BadArgument, "seed is -1"),
+                ("usbip:127.0.0.1:1", {"elf": "a.elf"}, inkwell.BadArgument, "elf requires a virtual board"),
+                (None, {"seed": 1}, inkwell.BadArgument, "seed requires a virtual board, not None")):
+            with self.subTest(address, **options), self.assertRaisesRegex(error, words):
+                inkwell.open(address, **options)
 
     def test_another_version_of_the_protocol(self):
         with VirtualBoard(BUILD, elf="next-protocol.elf") as board:

@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "host/bindings/python/arm.hpp"
+#include "host/bindings/python/value.hpp"
 
 namespace inkwell::python {
 namespace {
@@ -37,6 +38,16 @@ bool feels(const inkwell_pose& pose) {
 template <inkwell_limit limit>
 bool is_limited(const inkwell_pose& pose) {
   return (pose.limits & limit) != 0;
+}
+
+/// Describes a record by these attributes.
+std::string describe_attributes(const py::object& self, const std::vector<const char*>& attributes) {
+  std::string text = "<inkwell." + std::string(py::str(py::type::of(self).attr("__name__")));
+  for (const char* separator = " "; const char* name : attributes) {
+    text += separator + std::string(name) + "=" + std::string(py::repr(self.attr(name)));
+    separator = ", ";
+  }
+  return text + ">";
 }
 
 std::string describe(const inkwell_pose& pose) {
@@ -113,21 +124,27 @@ py::list signals() {
 }
 
 void define_states(py::module_& module) {
-  py::enum_<inkwell_state>(module, "State", "State of the arm.")
-      .value("STARTING", INKWELL_STARTING)
+  py::enum_<inkwell_state> state(module, "State", "State of the arm.");
+  reduce_to_state(state);
+  state.value("STARTING", INKWELL_STARTING)
       .value("UNREFERENCED", INKWELL_UNREFERENCED, "the stylus must rest in the inkwell once")
       .value("READY", INKWELL_READY, "the pose is valid, the force is off")
       .value("ACTIVE", INKWELL_ACTIVE, "the pose is valid, the force is on")
       .value("FAULT", INKWELL_FAULT, "the force is off, and Pose.fault_text has the cause");
-  py::enum_<inkwell_force_mode>(module, "ForceMode", "Effect of a program's forces on the board's walls.")
-      .value("BESIDE_WALLS", INKWELL_BESIDE_WALLS, "the walls of the board's box are active too")
+  py::enum_<inkwell_force_mode> force_mode(module, "ForceMode", "Effect of a program's forces on the board's walls.");
+  reduce_to_state(force_mode);
+  force_mode.value("BESIDE_WALLS", INKWELL_BESIDE_WALLS, "the walls of the board's box are active too")
       .value("INSTEAD_OF_WALLS", INKWELL_INSTEAD_OF_WALLS, "only the forces of programs are active");
 }
 
 void define_pose(py::module_& module) {
-  py::class_<inkwell_pose>(module, "Pose",
-                           "Position and state of the stylus, once per millisecond. The arrays are read-only.")
-      .def_readonly("time_s", &inkwell_pose::time_s, "board time, s")
+  using Pose = inkwell_pose;
+  py::class_<Pose> pose_type(module, "Pose",
+                             "Position and state of the stylus, once per millisecond. The arrays are read-only.");
+  make_value(pose_type, &Pose::time_s, &Pose::sequence, &Pose::state, &Pose::fault, &Pose::limits, &Pose::position_m,
+             &Pose::velocity_m_s, &Pose::rotation, &Pose::gimbal_rad, &Pose::joint_rad, &Pose::force_N,
+             &Pose::force_sources, &Pose::button_1, &Pose::button_2, &Pose::in_inkwell, &Pose::supply_V);
+  pose_type.def_readonly("time_s", &inkwell_pose::time_s, "board time, s")
       .def_readonly("sequence", &inkwell_pose::sequence,
                     "counts milliseconds; a gap is a missed pose. It wraps at 2**32, after 49 days")
       .def_readonly("state", &inkwell_pose::state)
@@ -168,8 +185,10 @@ void define_pose(py::module_& module) {
 }
 
 void define_device_and_information(py::module_& module) {
-  py::class_<inkwell_device>(module, "Device", "An arm that can be opened.")
-      .def_property_readonly("address", text_of(&inkwell_device::address), "for inkwell.open()")
+  using Device = inkwell_device;
+  py::class_<Device> device_type(module, "Device", "An arm that can be opened.");
+  make_value(device_type, &Device::address, &Device::serial_number, &Device::product, &Device::is_virtual);
+  device_type.def_property_readonly("address", text_of(&inkwell_device::address), "for inkwell.open()")
       .def_property_readonly("serial_number", text_of(&inkwell_device::serial_number),
                              "empty if it is not known before the device is opened")
       .def_property_readonly("product", text_of(&inkwell_device::product))
@@ -180,8 +199,12 @@ void define_device_and_information(py::module_& module) {
       });
 
   using Information = inkwell_information;
-  py::class_<Information>(module, "Information", "Identity and counters of an arm.")
-      .def_property_readonly("serial_number", text_of(&Information::serial_number))
+  py::class_<Information> information_type(module, "Information", "Identity and counters of an arm.");
+  make_value(information_type, &Information::serial_number, &Information::product, &Information::firmware_version,
+             &Information::is_virtual, &Information::servo_rate_Hz, &Information::servo_cycles_longest,
+             &Information::force_reports, &Information::force_reports_lost, &Information::force_reports_late,
+             &Information::force_reports_refused, &Information::motor_heat);
+  information_type.def_property_readonly("serial_number", text_of(&Information::serial_number))
       .def_property_readonly("product", text_of(&Information::product))
       .def_property_readonly("firmware_version", text_of(&Information::firmware_version))
       .def_property_readonly("is_virtual", flag_of(&Information::is_virtual), "True for a simulation")
@@ -193,18 +216,27 @@ void define_device_and_information(py::module_& module) {
       .def_readonly("force_reports_late", &Information::force_reports_late)
       .def_readonly("force_reports_refused", &Information::force_reports_refused)
       .def_property_readonly("motor_heat", array_of(&Information::motor_heat),
-                             "1 is the heat at continuous current; shape (3,)");
+                             "1 is the heat at continuous current; shape (3,)")
+      .def("__repr__", [](const py::object& self) {
+        return describe_attributes(self, {"product", "serial_number", "firmware_version", "is_virtual", "servo_rate_Hz",
+                                          "servo_cycles_longest", "force_reports", "force_reports_lost",
+                                          "force_reports_late", "force_reports_refused", "motor_heat"});
+      });
 }
 
 void define_store(py::module_& module) {
-  py::enum_<inkwell_stored>(module, "Stored", "Contents of the board's parameter store.")
-      .value("NOTHING", INKWELL_STORED_NOTHING)
+  py::enum_<inkwell_stored> stored(module, "Stored", "Contents of the board's parameter store.");
+  reduce_to_state(stored);
+  stored.value("NOTHING", INKWELL_STORED_NOTHING)
       .value("PARAMETERS", INKWELL_STORED_PARAMETERS)
       .value("FACTORY_RESET", INKWELL_STORED_FACTORY_RESET, "the stored parameters were erased")
       .value("OTHER_SCHEMA", INKWELL_STORED_OTHER_SCHEMA,
              "records of another firmware, which this firmware cannot read");
-  py::class_<inkwell_store>(module, "Store", "State of the board's parameter store.")
-      .def_readonly("contents", &inkwell_store::contents)
+  using Store = inkwell_store;
+  py::class_<Store> store_type(module, "Store", "State of the board's parameter store.");
+  make_value(store_type, &Store::contents, &Store::not_stored, &Store::stores_left, &Store::records_written,
+             &Store::sector_erases);
+  store_type.def_readonly("contents", &inkwell_store::contents)
       .def_readonly("not_stored", &inkwell_store::not_stored, "parameters that are lost at power loss")
       .def_readonly("stores_left", &inkwell_store::stores_left,
                     "stores that fit before the board's next start, which frees space")
@@ -212,19 +244,26 @@ void define_store(py::module_& module) {
       .def_property_readonly(
           "sector_erases",
           [](const inkwell_store& store) { return py::make_tuple(store.sector_erases[0], store.sector_erases[1]); },
-          "erases of each of the two sectors since the board was made");
+          "erases of each of the two sectors since the board was made")
+      .def("__repr__", [](const py::object& self) {
+        return describe_attributes(self, {"contents", "not_stored", "stores_left", "records_written", "sector_erases"});
+      });
 }
 
 void define_self_test(py::module_& module) {
-  py::enum_<inkwell_test>(module, "Test", "Result of a self-test item.")
-      .value("NOT_DONE", INKWELL_TEST_NOT_DONE, "not checked, or not checkable while another item fails")
+  py::enum_<inkwell_test> test(module, "Test", "Result of a self-test item.");
+  reduce_to_state(test);
+  test.value("NOT_DONE", INKWELL_TEST_NOT_DONE, "not checked, or not checkable while another item fails")
       .value("PASSED", INKWELL_TEST_PASSED)
       .value("FAILED", INKWELL_TEST_FAILED)
       .value("MOVED", INKWELL_TEST_MOVED, "not done: the arm moved too fast")
       .value("NO_PART", INKWELL_TEST_NO_PART, "not done: a motor with a current limit of 0 is not used")
       .value("BROKEN_OFF", INKWELL_TEST_BROKEN_OFF, "not done: no supply, or another fault interrupted the test");
-  py::class_<inkwell_test_item>(module, "TestItem", "An item of the board's self-test.")
-      .def_readonly("name", &inkwell_test_item::name)
+  using Item = inkwell_test_item;
+  py::class_<Item> item_type(module, "TestItem", "An item of the board's self-test.");
+  make_value(item_type, &Item::name, &Item::meaning, &Item::remedy, &Item::unit, &Item::figure, &Item::result,
+             &Item::takes_force);
+  item_type.def_readonly("name", &inkwell_test_item::name)
       .def_readonly("result", &inkwell_test_item::result)
       .def_readonly("figure", &inkwell_test_item::figure, "0 if the item has no figure, or was not checked")
       .def_readonly("unit", &inkwell_test_item::unit, "unit of the figure; empty if the item has no figure")
@@ -238,8 +277,10 @@ void define_self_test(py::module_& module) {
 
 void define_driver(py::module_& module) {
   using Driver = inkwell_driver;
-  py::class_<Driver>(module, "Driver", "The program that drives an arm.")
-      .def_property_readonly("is_driven", flag_of(&Driver::is_driven), "False: no program drives the arm")
+  py::class_<Driver> driver_type(module, "Driver", "The program that drives an arm.");
+  make_value(driver_type, &Driver::is_driven, &Driver::is_this_arm, &Driver::program, &Driver::process_id,
+             &Driver::driven_s);
+  driver_type.def_property_readonly("is_driven", flag_of(&Driver::is_driven), "False: no program drives the arm")
       .def_property_readonly("is_this_arm", flag_of(&Driver::is_this_arm),
                              "True: the arm is driven through this object")
       .def_property_readonly("program", text_of(&Driver::program), "name of the program")

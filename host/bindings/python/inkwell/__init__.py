@@ -14,6 +14,10 @@
 Lengths are in meters, forces in newtons, angles in radians, times in seconds. Errors are raised as inkwell.Error.
 """
 
+from . import _requirements
+
+_requirements.check()
+
 from ._native import Device, Driver, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem, devices
 from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open

@@ -2,6 +2,7 @@
 
 import atexit
 import contextlib
+import dataclasses
 import math
 import os
 import time
@@ -70,15 +71,15 @@ class VirtualHand:
         _call(self._arm.press_virtual_buttons, button_1, button_2, wants="True or False for each button")
 
 
+@dataclasses.dataclass
 class Recording:
     """Result of a recording, which is valid after its end."""
 
-    def __init__(self, path: str) -> None:
-        self.path = path
-        self.samples = 0
-        """Control periods in the file."""
-        self.lost = 0
-        """Control periods that were lost."""
+    path: str
+    samples: int = 0
+    """Control periods in the file."""
+    lost: int = 0
+    """Control periods that were lost."""
 
 
 class Arm:
@@ -335,25 +336,52 @@ class Arm:
         self._native.check_servo()
 
 
-def open(address: str | None = None, *, seed: int | None = None) -> Arm:
+def open(address: str | None = None, *, seed: int | None = None, arm: str | os.PathLike[str] | None = None,
+         elf: str | os.PathLike[str] | None = None) -> Arm:
     """Opens an arm; its force is off.
 
     address: None           the address in the environment variable INKWELL_DEVICE, otherwise the only arm on USB
              serial number  the arm on USB with this number
              "usbip:HOST:PORT"  the arm of a USB/IP server, such as a running virtual board;
                             "usbip:unix:PATH" for a Unix socket
-             "virtual"      a new virtual board, which exits with the arm; "virtual:FILE" with the arm description FILE,
-                            "virtual?arm=FILE&elf=FILE" also with another firmware
-    seed:    seed of the noise of a virtual board. Its time then passes only while a call of this package, such as sleep(),
-             waits for the board. The same program therefore returns the same samples each time.
+             "virtual"      a new virtual board, which exits with the arm
+
+    Options of a new virtual board:
+
+    seed:    seed of the noise. Board time then passes only while a call of this package, such as sleep(), waits for the
+             board. The same program therefore returns the same samples each time.
+    arm:     file with the arm description; by default the Omni
+    elf:     firmware image, such as an image with a force law; by default the firmware of this installation
+
+    The address "virtual:FILE" also selects an arm description, and "virtual?seed=7&arm=FILE&elf=FILE" all three.
     """
-    if seed is None:
+    options: dict[str, str] = {}
+    if seed is not None:
+        if not isinstance(seed, int) or seed < 0:
+            raise errors.BadArgument(f"The seed is {seed!r}. Give a whole number of 0 or more.")
+        options["seed"] = str(int(seed))
+    for name, file in (("arm", arm), ("elf", elf)):
+        if file is not None:
+            options[name] = _file_name(name, file)
+    if not options:
         return Arm(address)
-    if not isinstance(seed, int) or seed < 0:
-        raise errors.BadArgument(f"The seed is {seed!r}. Give a whole number of 0 or more.")
-    if address is None or not (address == "virtual" or address.startswith(("virtual:", "virtual?"))):
-        raise errors.BadArgument(f'A seed requires a virtual board, not {address!r}. Open "virtual".')
-    kind, _, options = address.partition("?")
+    if not isinstance(address, str) or not (address == "virtual" or address.startswith(("virtual:", "virtual?"))):
+        raise errors.BadArgument(f'The option {next(iter(options))} requires a virtual board, not {address!r}. '
+                                 'Open "virtual".')
+    kind, _, given = address.partition("?")
     if kind != "virtual":
-        options = "arm=" + address.removeprefix("virtual:")
-    return Arm("&".join(filter(None, [f"virtual?seed={seed}", options])))
+        given = "arm=" + address.removeprefix("virtual:")
+    for each in filter(None, given.split("&")):
+        name = each.partition("=")[0]
+        if name in options:
+            raise errors.BadArgument(f"The option {name} is given twice, also in the address {address!r}. Give it once.")
+    return Arm("virtual?" + "&".join(filter(None, [given, *(f"{name}={value}" for name, value in options.items())])))
+
+
+def _file_name(option: str, file: str | os.PathLike[str]) -> str:
+    if not isinstance(file, (str, os.PathLike)):
+        raise TypeError(f"The option {option} is {file!r}. Give the name of a file.")
+    name = os.fspath(file)
+    if not isinstance(name, str) or not name or "&" in name:
+        raise errors.BadArgument(f"The option {option} is {name!r}. Give the name of a file as text without the character &.")
+    return name

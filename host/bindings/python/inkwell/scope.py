@@ -45,5 +45,12 @@ class Samples:
             raise KeyError(f"{signal} was not selected. Selected are: {', '.join(self.signals)}")
         return self.values[:, self.signals.index(signal)]
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Samples):
+            return NotImplemented
+        return ((self.signals, self.lost, self.servo_rate_Hz) == (other.signals, other.lost, other.servo_rate_Hz)
+                and np.array_equal(self.values, other.values, equal_nan=True)
+                and np.array_equal(self.periods, other.periods))
+
     def __len__(self) -> int:
         return len(self.values)
