@@ -26,6 +26,11 @@ from unittest import mock
 
 import numpy as np
 
+try:
+    import h5py
+except ImportError:
+    h5py = None
+
 import inkwell
 from inkwell import _native, errors
 from virtual_board import VirtualBoard, be_patient, rests_at_x, wait_until
@@ -33,9 +38,10 @@ from virtual_board import VirtualBoard, be_patient, rests_at_x, wait_until
 BUILD = pathlib.Path()
 
 
-def run(program, *arguments):
+def run(program, *arguments, timeout_s=None):
     """Runs a Python program of its own."""
-    return subprocess.run([sys.executable, "-c", textwrap.dedent(program), *arguments], capture_output=True, text=True)
+    return subprocess.run([sys.executable, "-c", textwrap.dedent(program), *arguments], capture_output=True, text=True,
+                          timeout=timeout_s)
 
 
 class SelfTest(unittest.TestCase):
@@ -334,6 +340,17 @@ class Reading(unittest.TestCase):
             with self.assertRaises(inkwell.Error), self.arm.record(pathlib.Path(folder, "no/such/arm.csv"), "supply_V"):
                 pass
 
+    @unittest.skipIf(h5py is None, "h5py is not installed")
+    def test_h5py_reads_a_recording_as_the_page_says(self):
+        page = (pathlib.Path(__file__).parents[2] / "docs/python.md").read_text()
+        line, = re.findall(r'^force_N = (h5py\.File\("push\.h5"\).*)$', page, re.MULTILINE)
+        with tempfile.TemporaryDirectory() as folder:
+            file = str(pathlib.Path(folder, "push.h5"))
+            with self.arm.record(file, "position_x_m", "force_x_N") as recording:
+                self.arm.sleep(0.05)
+            force_N = eval(line.replace("push.h5", file), {"h5py": h5py})
+        self.assertEqual(force_N.shape, (recording.samples,))
+
     def test_an_invalid_timeout_is_refused(self):
         for timeout_s in math.nan, -1.0:
             with self.assertRaisesRegex(inkwell.BadArgument, "time-out"):
@@ -561,6 +578,17 @@ class Programs(unittest.TestCase):
         with inkwell.open("virtual?seed=7", arm=options["arm"], elf=options["elf"]) as arm:
             wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
             self.assertEqual(arm.capture("supply_V", duration_s=0.01), samples)
+
+    def test_sleep_ends_although_times_are_rounded(self):
+        said = run("""
+            import inkwell
+            with inkwell.open("virtual", seed=1) as arm:
+                begin_s = arm.pose.time_s
+                for _ in range(30):
+                    arm.sleep(0.1)
+                print(round(arm.pose.time_s - begin_s, 3))
+            """, timeout_s=120)
+        self.assertEqual(said.stdout, "3.0\n", said.stderr)
 
     def test_options_that_no_virtual_board_accepts(self):
         for address, options, error, words in (

@@ -118,9 +118,10 @@ Pose Arm::wait_for_pose(double timeout_s) {
 
 void Arm::sleep(double duration_s) {
   if (!(duration_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The duration is not valid. Give a time of 0 s or more.");
-  constexpr double attempt_s = 0.05;  // short, so that Ctrl-C is handled soon
+  constexpr double attempt_s = 0.05;   // short, so that Ctrl-C is handled soon
+  constexpr double rounding_s = 1e-6;  // inkwell_sleep() does not wait for a shorter time
   const double end_s = pose().time_s + duration_s;
-  for (double left_s = duration_s; left_s > 0; left_s = end_s - pose().time_s) {
+  for (double left_s = duration_s; left_s > rounding_s; left_s = end_s - pose().time_s) {
     const Use arm(*this);
     call([&] { return inkwell_sleep(arm, std::min(left_s, attempt_s)); });
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
