@@ -177,7 +177,7 @@ TEST_CASE("the reference lists the position and the meaning of each field of the
   CHECK(reference.find(fmt::format("| `scope_magic` | {} |", protocol::scope_magic)) != std::string::npos);
 }
 
-TEST_CASE("while nobody knows where the arm is, watching it shows no position; programs are told") {
+TEST_CASE("`watch` shows no position of an unreferenced arm, and its JSON output states the lost reference") {
   BoardAndCompanion rig;
   rig.wait_for_device();
   const auto first_line = [&](const std::vector<std::string>& more) {

@@ -52,7 +52,7 @@ TEST_CASE("an encoder jump is reported as encoder_implausible at any time within
   }
 }
 
-TEST_CASE("an encoder that jumps while another fault is told voids the reference all the same") {
+TEST_CASE("an encoder slip during another fault also clears the reference") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
@@ -85,8 +85,7 @@ TEST_CASE("an inkwell switch with a wire at ground raises a fault and sets no re
   }
 }
 
-TEST_CASE(
-    "an inkwell's switch whose wire touches ground from the start on is told as soon as the arm leaves the inkwell") {
+TEST_CASE("an inkwell switch wire at ground from the start on raises a fault when the arm leaves the inkwell") {
   BoardRig rig;
   rig.control.inject({.fault = "wire_low", .of = "inkwell_switch"});
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });

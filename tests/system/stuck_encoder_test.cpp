@@ -93,7 +93,7 @@ TEST_CASE("a stuck encoder is detected during slow motion into and out of a wall
   }
 }
 
-TEST_CASE("fast motion without a force: a motor whose voltage tells that it turns takes the reference away") {
+TEST_CASE("without force, a motor voltage that contradicts a stuck encoder raises motor_implausible") {
   for (const std::string joint : {"1", "2", "3", "none"}) {
     CAPTURE(joint);
     const bool healthy = joint == "none";

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/descriptor.hpp"
+
 namespace inkwell::command_line {
 namespace {
 
@@ -28,16 +30,6 @@ std::filesystem::path find_program(const std::string& program) {
   return {};
 }
 
-struct File {
-  explicit File(const std::filesystem::path& path) : descriptor(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~File() {
-    if (descriptor >= 0) close(descriptor);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  const int descriptor;
-};
-
 void append_needed(Elf* elf, Elf_Scn* section, std::vector<std::string>& names) {
   GElf_Shdr header;
   Elf_Data* data = elf_getdata(section, nullptr);
@@ -49,7 +41,7 @@ void append_needed(Elf* elf, Elf_Scn* section, std::vector<std::string>& names) 
   }
 }
 
-/// The process and all its descendants.
+/// Appends the process and all its descendants.
 void append_family(pid_t process, std::vector<pid_t>& family) {
   family.push_back(process);
   std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", process));
@@ -68,8 +60,8 @@ bool is_device_library(const std::filesystem::path& file) {
 std::vector<std::string> needed_libraries(const std::string& program) {
   std::vector<std::string> names;
   elf_version(EV_CURRENT);
-  const File file(find_program(program));
-  const std::unique_ptr<Elf, int (*)(Elf*)> elf(elf_begin(file.descriptor, ELF_C_READ, nullptr), elf_end);
+  const local::Descriptor file(open(find_program(program).c_str(), O_RDONLY | O_CLOEXEC));
+  const std::unique_ptr<Elf, int (*)(Elf*)> elf(elf_begin(file.number(), ELF_C_READ, nullptr), elf_end);
   if (elf == nullptr || elf_kind(elf.get()) != ELF_K_ELF) return names;
   for (Elf_Scn* section = nullptr; (section = elf_nextscn(elf.get(), section)) != nullptr;) {
     GElf_Shdr header;
