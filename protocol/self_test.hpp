@@ -27,8 +27,9 @@ inline constexpr std::string_view wiper_remedy =
 inline constexpr std::string_view motor = "The motor current during short voltage pulses matches the motor resistance.";
 inline constexpr std::string_view motor_remedy =
     "If the resistance is too high, check the half bridges, and the wires and brushes of the motor. If the resistance "
-    "is too low, the winding may be shorted. In both cases check the shunt, its amplifier, and motor_resistance_n_ohm, "
-    "which `inkwell tune current-loop` measures. If the motor is not installed, set its current_limit_n_A to 0.";
+    "is too low, the winding may be shorted. In both cases check the shunt, its amplifier, and motor_resistance_n_ohm. "
+    "If the motor is new or not installed, set motors_confirmed to 0 and test again: then `inkwell tune current-loop` "
+    "can measure a new motor.";
 inline constexpr std::string_view bridge = "The half bridges switch within their dead time.";
 inline constexpr std::string_view bridge_remedy =
     "Check the supply of the bridge, check its inputs for slow edges, or replace the bridge.";
@@ -68,7 +69,10 @@ inline constexpr std::string_view bridge_remedy =
   X(2, failed, "The item is not correct.")                                                                           \
   X(3, moved, "Not tested: the arm moved too fast. Hold the arm still and test again.")                               \
   X(4, no_part, "Not tested: a motor with a current limit of 0 is not used.")                                          \
-  X(5, broken_off, "Not tested: the bridges had no supply, or another fault interrupted the test.")
+  X(5, broken_off, "Not tested: the bridges had no supply, or another fault interrupted the test.")                    \
+  X(6, missing, "No current flows. Connect the motor, or check its bridge, its shunt and its amplifier.")                \
+  X(7, unknown_motor, "The resistance differs from motor_resistance_n_ohm. Run `inkwell tune current-loop`, and apply its proposals if this motor is the intended one.") \
+  X(8, wrong_sign, "The sensor shows a current of the wrong sign. Swap the sense wires of the shunt, not the motor wires.")
 // clang-format on
 
 /// The value of an enumerator is the index of its row and of its entry in SelfTestReport::entries.
@@ -157,10 +161,31 @@ struct SelfTestReport {
 static_assert(sizeof(SelfTestEntry) == 8);
 static_assert(sizeof(SelfTestReport) == 16 + 8 * self_test_item_count);
 
+constexpr bool is_failure(SelfTestResult result) {
+  return result == SelfTestResult::failed || result == SelfTestResult::wrong_sign;
+}
+
+/// Remedy of a failed item. A wrong sign has a remedy of its own.
+constexpr std::string_view remedy_of(const SelfTestItemInfo& item, SelfTestResult result) {
+  return result == SelfTestResult::wrong_sign ? info(result).meaning : item.remedy;
+}
+
+/// Returns true if a motor is not driven until the user has connected or confirmed it.
+constexpr bool awaits_motor(SelfTestResult result) {
+  return result == SelfTestResult::missing || result == SelfTestResult::unknown_motor;
+}
+
 /// Returns true if a failed item prevents the force.
 constexpr bool takes_force(const SelfTestReport& report) {
   for (std::size_t i = 0; i < self_test_item_count; ++i)
-    if (self_test_item_table[i].takes_force && report.entries[i].result == SelfTestResult::failed) return true;
+    if (self_test_item_table[i].takes_force && is_failure(report.entries[i].result)) return true;
+  return false;
+}
+
+/// Returns true if the motors receive no current for the force until all motors are connected and confirmed.
+constexpr bool awaits_motors(const SelfTestReport& report) {
+  for (std::size_t i = 0; i < self_test_item_count; ++i)
+    if (awaits_motor(report.entries[i].result)) return true;
   return false;
 }
 

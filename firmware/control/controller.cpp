@@ -193,10 +193,13 @@ void Controller::render_force(const Settings& settings) {
   transition_.advance();
   force_gain_ = supervisor_.state == State::landing ? std::max(force_gain_ - settings.landing_per_period, 0.0f)
                                                     : std::min(force_gain_ + settings.ramp_per_period, 1.0f);
-  // A lowered force limit applies immediately.
-  force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
+  // A lowered force limit applies immediately. Missing and unknown motors must not receive a current.
+  force_limit_N_ = measured_.awaits_motors
+                       ? 0.0f
+                       : std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
   const Force force = bounded(rendered_N_ + program_.force_N, force_limit_N_);
-  limits_ = bit(Limit::force, force.magnitude_N >= at_limit_part * force_limit_N_ && force.magnitude_N > 0.0f);
+  limits_ = bit(Limit::force, force.magnitude_N >= at_limit_part * force_limit_N_ && force.magnitude_N > 0.0f) |
+            bit(Limit::motors, measured_.awaits_motors);
   limit_and_apply_force(scaled(force, force_gain_), settings);
 }
 
@@ -250,7 +253,7 @@ void Controller::update_resistance(const Settings& settings) {
 void Controller::check_motors(const Settings& settings) {
   // While the force is on, the resistance is updated only when the heat is updated.
   if (!force_is_on() || heat_.readings == 0) update_resistance(settings);
-  if (!force_is_on()) {
+  if (!force_is_on() || measured_.awaits_motors) {
     motor_check_.reset();
     check_idle_currents();
     return;
@@ -298,6 +301,11 @@ void Controller::regulate_currents(const Settings& settings) {
     loops_ = {};
     if (pulses_.runs()) [[unlikely]]
       drive_pulses(settings);
+    return;
+  }
+  if (force_is_on() && measured_.awaits_motors) {
+    loops_ = {};
+    drive_.enabled = true;  // with the duty 0
     return;
   }
   // A motor in a voltage test has no current loop.
@@ -359,8 +367,7 @@ float Controller::test_voltage_V(const Settings& settings) const {
 
 void Controller::drive_pulses(const Settings& settings) {
   const Triple voltage_V = pulses_.step(current_A_, encoder_counts_,
-                                        {.resistance_ohm = settings.motor_model.resistance_ohm,
-                                         .current_limit_A = settings.motors.current_limit_A,
+                                        {.current_limit_A = settings.motors.current_limit_A,
                                          .supply_V = supply_.supply_V,
                                          .dead_time_part = board_.dead_time_part});
   for (std::size_t i = 0; i < 3; ++i) {

@@ -86,7 +86,7 @@ class Controller {
   // ---- self-test ----
 
   /// Starts the test pulses of a self-test.
-  void start_pulses() { pulses_.start(); }
+  void start_pulses(const PulseSize& size) { pulses_.start(size); }
   bool pulses_run() const { return pulses_.runs(); }
   const PulseRound& pulse_round() const { return pulses_.round(); }
   const Triple& current_offsets_A() const { return offsets_.offset_A; }

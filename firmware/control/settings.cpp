@@ -5,6 +5,7 @@
 
 #include "firmware/control/signal_path/conditioning.hpp"
 #include "firmware/control/supervision/brake.hpp"
+#include "firmware/control/supervision/self_test_pulses.hpp"
 #include "firmware/control/supervision/stuck_encoder.hpp"
 #include "protocol/faults.hpp"
 
@@ -91,7 +92,8 @@ Motors motors(const ParameterSet& set) {
 }
 
 MotorModel motor_model(const ParameterSet& set) {
-  return {set.of_each(Parameter::motor_resistance_1_ohm), joint_Nm_per_A(set)};
+  return {set.of_each(Parameter::motor_resistance_1_ohm), joint_Nm_per_A(set),
+          set[Parameter::motors_confirmed] != 0.0f};
 }
 
 HeatScale heat(const ParameterSet& set) {
@@ -170,6 +172,16 @@ SpeedLimit speed(const ParameterSet& set) {
 }
 
 }  // namespace
+
+PulseSize PulseSize::of(const Triple& resistance_ohm) {
+  constexpr float shortest = SelfTestPulses::level_periods, longest = SelfTestPulses::level_maximum_periods;
+  constexpr float ohm_for_shortest = 2.0f;
+  PulseSize size{resistance_ohm, {}};
+  for (std::size_t i = 0; i < 3; ++i)
+    size.level_periods[i] =
+        static_cast<std::uint32_t>(std::clamp(shortest * ohm_for_shortest / resistance_ohm[i], shortest, longest));
+  return size;
+}
 
 Settings prepare(const ParameterSet& parameters) {
   const Motors all_motors = motors(parameters);

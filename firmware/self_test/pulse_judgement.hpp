@@ -19,6 +19,12 @@ struct PulseJudgement {
   /// Largest reported resistance, relative to the expected resistance. This value means no current or a current of the
   /// wrong sign.
   static constexpr float resistance_shown_part = 10.0f;
+  /// Resistances of the motors that a user may confirm. The bounds of the result have a margin for the error of the
+  /// self-test.
+  static constexpr float smallest_ohm = 0.5f, largest_ohm = 30.0f;
+  static constexpr float unknown_minimum_ohm = 0.9f * smallest_ohm, unknown_maximum_ohm = 1.1f * largest_ohm;
+  /// Above this resistance, a motor is missing. The current at the largest pulse voltage is then 75 mA.
+  static constexpr float missing_ohm = 100.0f;
   /// Largest voltage loss of a bridge, relative to the loss from its dead time.
   static constexpr float dead_time_ratio = 1.8f;
   /// Largest current in the sensor of an idle motor, relative to the current of the pulsed motor. Two touching wires
@@ -43,6 +49,8 @@ struct PulseJudgement {
   control::Triple bridge_loss_part;
   /// Mean resistance for both current signs. The value is 0 for a moving motor or after a failure.
   control::Triple resistance_ohm;
+  /// Rough resistance for the size of the next pulses, 0.5 to 30 ohm.
+  control::Triple estimate_ohm;
 
   bool any(Result result) const;
   /// Returns the result for a moving arm.

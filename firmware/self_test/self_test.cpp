@@ -18,6 +18,9 @@ constexpr Item first_of_each_test = Item::current_offsets;
 
 constexpr std::uint32_t orders = 4;
 
+constexpr control::Triple smallest_resistances{PulseJudgement::smallest_ohm, PulseJudgement::smallest_ohm,
+                                               PulseJudgement::smallest_ohm};
+
 }  // namespace
 
 void SelfTest::note(Item item, Result result, float figure) {
@@ -41,7 +44,7 @@ void SelfTest::note_wire(bool follows) {
 void SelfTest::follow(const control::Controller& controller, const control::Settings& settings,
                       const Readings& readings) {
   const auto& [signals, now] = samples_[samples_.recorded() - 1];
-  if (begun_.load() != test_) begin(readings, controller.current_offsets_A());
+  if (begun_.load() != test_) begin(readings, settings, controller.current_offsets_A());
   if (now.state != protocol::State::testing) {
     if (phase_ != Phase::idle && phase_ != Phase::verdict) break_off();
     phase_ = Phase::idle;
@@ -52,7 +55,7 @@ void SelfTest::follow(const control::Controller& controller, const control::Sett
   }
 }
 
-void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) {
+void SelfTest::begin(const Readings& readings, const control::Settings& settings, const control::Triple& offset_A) {
   test_ = begun_.load();
   for (std::size_t i = static_cast<std::size_t>(first_of_each_test); i < entries_.size(); ++i) entries_[i] = {};
   offset_A_ = offset_A;
@@ -64,6 +67,9 @@ void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) 
   }
   wire_ = 0;
   following_readings_ = rounds_ = failures_ = 0;
+  sizes_pulses_ = !settings.motor_model.is_confirmed;
+  pulse_size_ = control::PulseSize::of(settings.motor_model.resistance_ohm);
+  if (sizes_pulses_) pulse_size_ = control::PulseSize::of(smallest_resistances);
   phase_ = Phase::wires;
 }
 
@@ -112,10 +118,19 @@ void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const contro
 }
 
 void SelfTest::end_round(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
+  if (sizes_pulses_ && !judgement.any(Result::moved)) {
+    sizes_pulses_ = false;
+    control::Triple estimate_ohm{};
+    for (std::size_t i = 0; i < 3; ++i) estimate_ohm[i] = estimated_part * judgement.estimate_ohm[i];
+    pulse_size_ = control::PulseSize::of(estimate_ohm);
+    begin_round();
+    return;
+  }
   note_pulses(judgement);
   store_measurements(judgement, signals);
-  if (judgement.any(Result::failed)) ++failures_;
-  const bool is_conclusive = !judgement.any(Result::failed) && !judgement.any(Result::moved);
+  const bool has_failed = judgement.any(Result::failed) || judgement.any(Result::wrong_sign);
+  if (has_failed) ++failures_;
+  const bool is_conclusive = !has_failed && !judgement.any(Result::moved);
   if (is_conclusive || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
     finish_test();
   else
@@ -143,7 +158,9 @@ void SelfTest::store_measurements(const PulseJudgement& judgement, const protoco
 void SelfTest::finish_test() {
   ++tests_ended_;
   phase_ = Phase::verdict;
-  send_order(protocol::takes_force(report()) ? Order::fail : Order::pass);
+  const protocol::SelfTestReport found = report();
+  measured_.awaits_motors = protocol::awaits_motors(found);
+  send_order(protocol::takes_force(found) ? Order::fail : Order::pass);
 }
 
 void SelfTest::send_order(Order order) {
@@ -180,7 +197,7 @@ INKWELL_INTERRUPT void SelfTest::exchange(control::Controller& controller) {
   order_.store(0);
   switch (static_cast<Order>(order % orders)) {
     case Order::none: return;
-    case Order::pulses: pulses_run_ = true; return controller.start_pulses();
+    case Order::pulses: pulses_run_ = true; return controller.start_pulses(pulse_size_);
     case Order::pass: return controller.pass_self_test(measured_);
     case Order::fail: return controller.raise(protocol::Fault::self_test_failed);
   }

@@ -24,6 +24,8 @@ class SelfTest {
   static constexpr std::uint32_t wire_readings = 8;
   /// An item has failed after this number of failures with the arm at rest.
   static constexpr std::uint32_t failures_to_believe = 2;
+  /// Part of the estimated resistance for the following pulses. The estimate may be too large by a fifth.
+  static constexpr float estimated_part = 0.8f;
   /// Largest number of pulse rounds for a moving arm.
   static constexpr std::uint32_t rounds_maximum = 8;
   static constexpr std::uint32_t rest_patience_periods = control::periods_in(0.02f);
@@ -74,7 +76,7 @@ class SelfTest {
   static Result result_of(bool has_passed) { return has_passed ? Result::passed : Result::failed; }
   protocol::SelfTestEntry& entry(Item item) { return entries_[static_cast<std::size_t>(item)]; }
   void note(Item item, Result result, float figure);
-  void begin(const Readings& readings, const control::Triple& offset_A);
+  void begin(const Readings& readings, const control::Settings& settings, const control::Triple& offset_A);
   void note_offsets();
   void break_off();
   void wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model);
@@ -95,6 +97,9 @@ class SelfTest {
   std::uint32_t rounds_ = 0, failures_ = 0;
   std::uint32_t test_since_ = 0, waits_since_ = 0;  ///< sample numbers
   control::Triple offset_A_{};                      ///< sensor offsets measured at start-up
+  /// True until a first round with small pulses has estimated the resistance of motors that are not confirmed.
+  bool sizes_pulses_ = false;
+  control::PulseSize pulse_size_{};     ///< read by the interrupt after the order `pulses`
   control::MeasuredMotors measured_{};  ///< results of the rounds; read by the interrupt after the order `pass`
 
   /// Request to the interrupt, with the self-test number. The interrupt resets the request to 0.

@@ -26,6 +26,7 @@ struct MotorModel {
   Triple resistance_ohm;  ///< from the parameters
   /// Back EMF per joint speed, negative for a reversed motor.
   Triple back_emf_Vs_per_rad;
+  bool is_confirmed;  ///< a missing or unknown motor fails the self-test
 };
 
 /// Voltage drop of a bridge. Above MotorCheck::steady_A, the voltage drop opposes the current.
@@ -39,9 +40,10 @@ struct BridgeLoss {
 
 /// Self-test measurements of motors and bridges. Each value comes from the last conclusive test.
 struct MeasuredMotors {
-  Triple bridge_loss_part{};  ///< voltage drop of bridge and brushes, as a part of the supply; 0 if unknown
-  Triple resistance_ohm{};    ///< measured resistance; 0 if unknown
-  Triple heat{};              ///< heat at the resistance measurement (MotorHeat)
+  Triple bridge_loss_part{};   ///< voltage drop of bridge and brushes, as a part of the supply; 0 if unknown
+  Triple resistance_ohm{};     ///< measured resistance; 0 if unknown
+  Triple heat{};               ///< heat at the resistance measurement (MotorHeat)
+  bool awaits_motors = false;  ///< a motor is missing or unknown, so no motor receives current for the force
 };
 
 /// Assumed resistance of a motor.

@@ -22,6 +22,7 @@ struct PulseRound {
     std::array<Triple, levels> current_A{};  ///< mean of each of the three sensors at each level
     float low_V = 0.0f, high_V = 0.0f;
     std::int32_t moved_counts = 0;  ///< motion of the motor's encoder during the four levels
+    float levels_s = 0.0f;          ///< duration of the four levels
     bool takes_part = false;
   };
   std::array<Motor, 3> motors{};
@@ -29,9 +30,18 @@ struct PulseRound {
   float dead_V = 0.0f;  ///< voltage drop from the dead time of the bridges
 };
 
-/// These values determine the pulse voltages.
+/// Assumed resistance of each motor, and duration of a level.
+struct PulseSize {
+  Triple resistance_ohm{};
+  std::array<std::uint32_t, 3> level_periods{};
+
+  /// A smaller resistance increases the electrical time constant. Only the main loop calls this function, because its
+  /// divisions are slow (settings.cpp).
+  static PulseSize of(const Triple& resistance_ohm);
+};
+
+/// These values also determine the pulse voltages.
 struct PulseScale {
-  const Triple& resistance_ohm;
   const Triple& current_limit_A;  ///< a motor with limit 0 is not used
   float supply_V;
   float dead_time_part;  ///< voltage drop from the dead time of the bridges, as a part of the supply
@@ -39,8 +49,10 @@ struct PulseScale {
 
 class SelfTestPulses {
  public:
-  /// Level duration: nine electrical time constants of a motor.
+  /// Shortest duration of a level: nine electrical time constants of an Omni motor.
   static constexpr std::uint32_t level_periods = periods_in(0.001f);
+  /// Longest duration of a level: six electrical time constants of an Omni winding with 0.5 ohm.
+  static constexpr std::uint32_t level_maximum_periods = 3 * level_periods;
   /// Only the last periods of a level are averaged, after the current has settled.
   static constexpr std::uint32_t mean_periods = 8;
   static constexpr std::uint32_t rest_periods = 10;
@@ -56,7 +68,9 @@ class SelfTestPulses {
   /// Voltage bound for windings with a high resistance.
   static constexpr float ohmic_maximum_V = 7.5f;
 
-  void start() {
+  /// Starts a round with pulses of this size.
+  void start(const PulseSize& size) {
+    size_ = size;
     runs_ = true;
     motor_ = level_ = 0;
     periods_ = 0;
@@ -75,6 +89,7 @@ class SelfTestPulses {
   [[gnu::cold]] void size_pulses(const PulseScale& scale);
 
   PulseRound round_;
+  PulseSize size_;
   std::size_t motor_ = 0;
   std::size_t level_ = 0;      ///< `levels` while the motor rests
   std::uint32_t periods_ = 0;  ///< number of periods of this level

@@ -67,8 +67,8 @@ static_assert(std::ranges::equal(sources, protocol::force_source_table, [](const
   return c.value == static_cast<int>(row.source) && is_capital_of(c.name, "", row.name);
 }));
 
-constexpr Code limits[] = {CODE(LIMIT_FORCE),  CODE(LIMIT_CURRENT), CODE(LIMIT_CHANGE),
-                           CODE(LIMIT_ENERGY), CODE(LIMIT_HEAT),    CODE(LIMIT_SPEED)};
+constexpr Code limits[] = {CODE(LIMIT_FORCE), CODE(LIMIT_CURRENT), CODE(LIMIT_CHANGE), CODE(LIMIT_ENERGY),
+                           CODE(LIMIT_HEAT),  CODE(LIMIT_SPEED),   CODE(LIMIT_MOTORS)};
 static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c, const auto& row) {
   return c.value == static_cast<int>(row.limit) && is_capital_of(c.name, "LIMIT_", row.name);
 }));
@@ -82,8 +82,9 @@ static_assert(std::ranges::equal(stored, protocol::store_contents_table, [](cons
 }));
 static_assert(std::size(inkwell_store{}.sector_erases) == protocol::store_sectors);
 
-constexpr Code tests[] = {CODE(TEST_NOT_DONE), CODE(TEST_PASSED),  CODE(TEST_FAILED),
-                          CODE(TEST_MOVED),    CODE(TEST_NO_PART), CODE(TEST_BROKEN_OFF)};
+constexpr Code tests[] = {CODE(TEST_NOT_DONE), CODE(TEST_PASSED),        CODE(TEST_FAILED),
+                          CODE(TEST_MOVED),    CODE(TEST_NO_PART),       CODE(TEST_BROKEN_OFF),
+                          CODE(TEST_MISSING),  CODE(TEST_UNKNOWN_MOTOR), CODE(TEST_WRONG_SIGN)};
 static_assert(std::ranges::equal(tests, protocol::self_test_result_table, [](const Code& c, const auto& row) {
   return &row - protocol::self_test_result_table.data() == c.value && is_capital_of(c.name, "TEST_", row.name);
 }));

@@ -155,6 +155,7 @@ mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
                          "limited_by_energy",
                          "limited_by_heat",
                          "limited_by_speed",
+                         "limited_by_motors",
                          "button_1",
                          "button_2",
                          "in_inkwell"};
@@ -178,6 +179,7 @@ mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_ENERGY) != 0),
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_HEAT) != 0),
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_SPEED) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_MOTORS) != 0),
                        mxCreateLogicalScalar(pose.button_1 != 0),
                        mxCreateLogicalScalar(pose.button_2 != 0),
                        mxCreateLogicalScalar(pose.in_inkwell != 0)};
@@ -299,7 +301,8 @@ Answers self_test(const Arguments& arguments) {
   std::vector<inkwell_test_item> items(count);
   const bool only_last = mxGetScalar(arguments.at(1)) != 0;
   require((only_last ? inkwell_get_self_test : inkwell_self_test)(arm, items.data(), items.size(), &count));
-  static const char* const results[] = {"not done", "passed", "failed", "moved", "no part", "broken off"};
+  static const char* const results[] = {"not done",   "passed",  "failed",        "moved",     "no part",
+                                        "broken off", "missing", "unknown motor", "wrong sign"};
   const char* names[] = {"name", "result", "figure", "unit", "takes_force", "meaning", "remedy"};
   mxArray* table =
       mxCreateStructMatrix(static_cast<mwSize>(items.size()), 1, static_cast<int>(std::size(names)), names);

@@ -14,6 +14,7 @@ function pose = inkwell_pose(arm)
 %   pose.limited_by_energy    true while the energy reserve is used up; the force along the motion is scaled down
 %   pose.limited_by_heat      true while a hot motor is at its reduced current limit; all motors are scaled down
 %   pose.limited_by_speed     true while the probe is close to the speed limit; the force along the motion is scaled down
+%   pose.limited_by_motors    true while no motor receives current, because a motor is missing or unknown
 %   pose.button_1, pose.button_2, pose.in_inkwell    true or false
 %
 % While no poses arrive (unplugged cable, restarted or silent board), the function raises an error with the identifier

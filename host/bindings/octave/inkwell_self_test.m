@@ -3,7 +3,8 @@ function items = inkwell_self_test(arm, which)
 % items = inkwell_self_test(arm, 'last')  Returns the results of the last test, without a new test.
 %
 %   items(i).name, .meaning  the item, and the condition that the test checks
-%   items(i).result          'passed', 'failed', 'not done', 'moved', 'no part' or 'broken off'
+%   items(i).result          'passed', 'failed', 'not done', 'moved', 'no part', 'broken off', 'missing',
+%                            'unknown motor' or 'wrong sign'
 %   items(i).figure, .unit   the measured value; unit is empty if the item has no figure
 %   items(i).takes_force     whether a failure disables the force
 %   items(i).remedy          what to do if it fails

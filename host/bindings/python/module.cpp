@@ -175,6 +175,8 @@ void define_pose(py::module_& module) {
                              "a hot motor is at its reduced current limit; all motors are scaled down together")
       .def_property_readonly("limited_by_speed", &is_limited<INKWELL_LIMIT_SPEED>,
                              "the probe is close to the speed limit; the force along the motion is scaled down")
+      .def_property_readonly("limited_by_motors", &is_limited<INKWELL_LIMIT_MOTORS>,
+                             "a motor is missing or unknown, so no motor receives current for the force")
       .def_property_readonly("limited_by_current", &is_limited<INKWELL_LIMIT_CURRENT>,
                              "a motor is at its current limit; all motors are scaled down together")
       .def_property_readonly("button_1", flag_of(&inkwell_pose::button_1), "pressed")
@@ -258,7 +260,10 @@ void define_self_test(py::module_& module) {
       .value("FAILED", INKWELL_TEST_FAILED)
       .value("MOVED", INKWELL_TEST_MOVED, "not done: the arm moved too fast")
       .value("NO_PART", INKWELL_TEST_NO_PART, "not done: a motor with a current limit of 0 is not used")
-      .value("BROKEN_OFF", INKWELL_TEST_BROKEN_OFF, "not done: no supply, or another fault interrupted the test");
+      .value("BROKEN_OFF", INKWELL_TEST_BROKEN_OFF, "not done: no supply, or another fault interrupted the test")
+      .value("MISSING", INKWELL_TEST_MISSING, "a motor that is not connected")
+      .value("UNKNOWN_MOTOR", INKWELL_TEST_UNKNOWN_MOTOR, "a motor of another resistance")
+      .value("WRONG_SIGN", INKWELL_TEST_WRONG_SIGN, "a failure: the current has the wrong sign");
   using Item = inkwell_test_item;
   py::class_<Item> item_type(module, "TestItem", "An item of the board's self-test.");
   make_value(item_type, &Item::name, &Item::meaning, &Item::remedy, &Item::unit, &Item::figure, &Item::result,

@@ -42,9 +42,10 @@ FaultText fault_text(protocol::Fault fault, const protocol::SelfTestReport& test
   std::vector<std::string_view> items, remedies;
   for (std::size_t i = 0; i < protocol::self_test_item_count; ++i) {
     const auto& item = protocol::self_test_item_table[i];
-    if (!item.takes_force || test.entries[i].result != protocol::SelfTestResult::failed) continue;
+    if (!item.takes_force || !protocol::is_failure(test.entries[i].result)) continue;
     items.push_back(item.name);
-    if (std::ranges::find(remedies, item.remedy) == remedies.end()) remedies.push_back(item.remedy);
+    const std::string_view remedy = protocol::remedy_of(item, test.entries[i].result);
+    if (std::ranges::find(remedies, remedy) == remedies.end()) remedies.push_back(remedy);
   }
   if (fault != protocol::Fault::self_test_failed || items.empty()) return text;
   text.cause = fmt::format("The self-test failed for items that the force needs: {}.", fmt::join(items, ", "));

@@ -29,7 +29,8 @@ using protocol::TestPulse;
 constexpr double period_s = 1.0 / protocol::servo_rate_Hz;
 constexpr float voltage_pulse_s = 0.01f;  // tens of winding time constants of a small motor
 constexpr float first_voltage_V = 1.0f, largest_voltage_V = 4.0f;
-constexpr int pairs_of_pulses = 3;  // at the higher voltage; a forward and a backward pulse cancel the arm's motion
+constexpr float smallest_ohm = 0.5f;  ///< of a motor that the user has not confirmed
+constexpr int pairs_of_pulses = 3;    // at the higher voltage; a forward and a backward pulse cancel the arm's motion
 constexpr float step_pulse_s = 0.02f, step_A = 0.5f;
 constexpr double ripple_A = static_cast<double>(board::current_ripple_A(arm_defaults::motor::inductance_H)) / 2;
 
@@ -88,9 +89,11 @@ class IdentifyMotor final : public Step {
 
   void begin(const Observation& now, DevicePort& port) override {
     set_ = *now.parameters;
-    const float resistance_ohm = set_[of_number(Parameter::motor_resistance_1_ohm, motor_)];
-    first_V_ = std::min(first_voltage_V, allowed_pulse_A(set_, motor_) * resistance_ohm);
     tuning_->name_board(now.information ? now.information->board_name : "");
+    const float parameter_ohm = set_[of_number(Parameter::motor_resistance_1_ohm, motor_)];
+    const bool is_confirmed = set_[Parameter::motors_confirmed] == 1.0f;
+    const float resistance_ohm = is_confirmed ? parameter_ohm : std::min(parameter_ohm, smallest_ohm);
+    first_V_ = std::min(first_voltage_V, expected_dead_V() + allowed_pulse_A(set_, motor_) * resistance_ohm);
     start_pulse(first_V_, now, port);
   }
   void receive(const device::ScopeSamples& samples) override {
@@ -158,6 +161,10 @@ class IdentifyMotor final : public Step {
     const double lost_V = std::min(dead_time_V(), 0.5 * static_cast<double>(first_V_));
     const double resistance_ohm = (static_cast<double>(first_V_) - lost_V) / settled_A();
     voltage_V_ = std::clamp(static_cast<float>(lost_V + resistance_ohm * wanted_A), first_V_, largest_voltage_V);
+  }
+
+  float expected_dead_V() const {
+    return tuning_->board == nullptr ? 0.0f : tuning_->board->bridge_dead_time_part() * board::supply_nominal_V;
   }
 
   double dead_time_V() const {
@@ -383,6 +390,20 @@ class TryGains final : public Step {
     for (std::size_t i = 0; i < tuning_->motors.size(); ++i)
       if (const auto motor_ohm = tuning_->motor_ohm(tuning_->motors[i]))
         findings_->propose(old_, resistance_of(i), to_four_digits(*motor_ohm), "used by the motor check");
+    if (!has_measured_all_motors() || old_[Parameter::motors_confirmed] == 1.0f) return;
+    findings_->propose(old_, Parameter::motors_confirmed, 1.0, "all motors are installed and measured");
+    findings_->sentences.push_back(
+        "Compare the resistances with the data sheets or a meter. After you apply the proposals, run `inkwell "
+        "self-test`: then the motors receive current for the force.");
+  }
+
+  /// A motor with the current limit 0 is not used.
+  bool has_measured_all_motors() const {
+    for (const int motor : {1, 2, 3}) {
+      const bool is_used = old_[of_number(Parameter::current_limit_1_A, motor)] > 0.0f;
+      if (is_used && std::ranges::find(tuning_->options.motors, motor) == tuning_->options.motors.end()) return false;
+    }
+    return tuning_->board != nullptr;
   }
 
   std::shared_ptr<Tuning> tuning_;

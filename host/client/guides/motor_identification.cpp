@@ -134,7 +134,7 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
     for (std::size_t k = segment.first; k < segment.last; ++k) measured[at++] = segment.pulse->current_A[k];
     const double current_A = mean_of_second_half(segment.pulse->current_A, segment);
     const double voltage_V = mean_of_second_half(segment.pulse->voltage_V, segment);
-    constexpr double least_A_per_V = 1.0 / 30.0;  // a larger resistance counts as an open circuit
+    constexpr double least_A_per_V = 1.0 / 100.0;  // a larger resistance counts as an open circuit
     if (current_A / voltage_V < -least_A_per_V)
       throw device::Error(
           "The measured motor current has the wrong sign. Check the wiring of the current sensor and of the bridge.");
@@ -163,7 +163,7 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
         static_cast<double>(segments.size());
   }
   const double largest_A = measured.cwiseAbs().maxCoeff();
-  const bool plausible = std::isfinite(circuit.resistance_ohm) && time_constant_s > 0.2 * sample_period_s &&
+  const bool plausible = std::isfinite(circuit.resistance_ohm) && time_constant_s > 0.1 * sample_period_s &&
                          time_constant_s < 100 * sample_period_s && circuit.residual_A < 0.1 * largest_A;
   if (!plausible)
     throw device::Error(

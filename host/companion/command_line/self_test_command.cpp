@@ -23,12 +23,12 @@ void for_each_item(const SelfTestReport& report, Action action) {
     action(info(static_cast<SelfTestItem>(i)), report.entries[i]);
 }
 
-/// Returns true if no item has failed and no test was aborted.
+/// Returns true if no item has failed, no test was aborted, and no motor is missing or unknown.
 bool is_well(const SelfTestReport& report) {
   bool is_well = true;
   for_each_item(report, [&](const auto&, const auto& entry) {
-    is_well &= entry.result != SelfTestResult::failed && entry.result != SelfTestResult::moved &&
-               entry.result != SelfTestResult::broken_off;
+    is_well &= entry.result == SelfTestResult::passed || entry.result == SelfTestResult::not_done ||
+               entry.result == SelfTestResult::no_part;
   });
   return is_well;
 }
@@ -42,7 +42,7 @@ ordered_json to_json(const SelfTestReport& report) {
                      {"unit", item.unit},
                      {"takes_force", item.takes_force},
                      {"meaning", item.meaning},
-                     {"remedy", item.remedy}});
+                     {"remedy", protocol::remedy_of(item, entry.result)}});
   });
   return {{"well", is_well(report)}, {"tests_ended", report.tests_ended}, {"items", items}};
 }
@@ -56,11 +56,12 @@ void print(const SelfTestReport& report) {
     fmt::print("{}\n", fmt::format("{:18}  {:10}  {}", item.name, info(entry.result).name, figure(item, entry)));
   });
   for_each_item(report, [&](const auto& item, const auto& entry) {
-    if (entry.result == SelfTestResult::failed)
+    if (protocol::is_failure(entry.result))
       fmt::print(
           "\n"
           "{} failed{}. Expected: {} {}\n",
-          item.name, item.takes_force ? ", and the force stays off" : "", item.meaning, item.remedy);
+          item.name, item.takes_force ? ", and the force stays off" : "", item.meaning,
+          protocol::remedy_of(item, entry.result));
   });
   if (is_well(report)) return;
   bool is_printed[protocol::self_test_result_table.size()] = {};
@@ -68,9 +69,11 @@ void print(const SelfTestReport& report) {
     const auto result = static_cast<std::size_t>(entry.result);
     if (result >= std::size(is_printed) || is_printed[result]) return;
     is_printed[result] = true;
-    if (entry.result == SelfTestResult::moved || entry.result == SelfTestResult::broken_off)
+    if (entry.result == SelfTestResult::moved || entry.result == SelfTestResult::broken_off ||
+        protocol::awaits_motor(entry.result))
       fmt::print("\n{}: {}\n", info(entry.result).name, info(entry.result).meaning);
   });
+  if (protocol::awaits_motors(report)) fmt::print("\n{}\n", info(protocol::Limit::motors).meaning);
 }
 
 int test(const DeviceOptions& options, bool only_last) {

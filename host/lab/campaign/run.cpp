@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <random>
 #include <utility>
 
+#include "host/client/local/private_folder.hpp"
 #include "host/lab/campaign/board_run.hpp"
 #include "host/lab/campaign/handling.hpp"
 #include "protocol/reports.hpp"
@@ -101,6 +104,17 @@ void begin_update(BoardRun& board) {
   expect(board.wait_for(State::update, 0.02), "the board did not leave for its boot loader.");
 }
 
+/// Writes a flash file of a board whose motors are confirmed, because only such a board tests its motors for faults.
+void write_confirmed_board(device::VirtualBoardOptions options, const std::filesystem::path& flash) {
+  constexpr double storing_s = 0.3;
+  options.flash = flash;
+  BoardRun board(options);
+  expect(board.connect(1.0), "the device did not enumerate.");
+  board.set({{Parameter::motors_confirmed, 1.0f}});
+  board.command(Command::store_parameters);
+  board.run(storing_s);
+}
+
 /// The hand grips the stylus before the board starts. After power-on the watchdog expires once.
 void begin_start(BoardRun& board, const Case& the_case) {
   take_by_hand(board, board.true_position_m(), 0.05);
@@ -140,6 +154,7 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   board.run(0.6);
   if (situation == CaseSituation::ready) return parameters;
   if (situation == CaseSituation::testing) {
+    board.set({{Parameter::motors_confirmed, 1.0f}});
     begin_self_test(board);
     return parameters;
   }
@@ -345,6 +360,12 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   const bool chooses = fault && protocol::info(*fault).location == protocol::InjectionLocation::address;
   options.seed = chooses ? the_case.number : the_case.phase;
   try {
+    std::optional<local::PrivateFolder> folder;
+    if (the_case.situation == CaseSituation::starting) {
+      folder.emplace(local::PrivateFolder::for_files());
+      options.flash = folder->path() / "flash";
+      write_confirmed_board(options, options.flash);
+    }
     BoardRun board(options);
     const ParameterSet parameters = bring_into(board, the_case);
     result.force_limit_N = static_cast<double>(parameters[Parameter::force_limit_N]);

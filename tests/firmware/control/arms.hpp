@@ -35,6 +35,12 @@ inline protocol::ParameterSet parameters_of(std::string_view name) {
 
 /// A parallelogram arm in the Omni's frame.
 inline protocol::ParameterSet omni_parameters() { return parameters_of("omni"); }
+/// The same arm with motors that the user has confirmed.
+inline protocol::ParameterSet confirmed_omni_parameters() {
+  protocol::ParameterSet set = omni_parameters();
+  set[protocol::Parameter::motors_confirmed] = 1.0f;
+  return set;
+}
 /// The serial Denavit-Hartenberg arm of the paper's Table 1.
 inline protocol::ParameterSet paper_parameters() { return parameters_of("paper"); }
 

@@ -18,7 +18,7 @@ Settings plain_settings() { return control::prepare(tests::paper_parameters()); 
 Controller controller_in_pulses(const Settings& settings) {
   Controller controller = tests::ready_controller(settings);
   tests::run(controller, tests::samples_at_rest(), settings, 300);
-  controller.start_pulses();
+  controller.start_pulses(control::PulseSize::of(settings.motor_model.resistance_ohm));
   tests::run(controller, tests::samples_at_rest(), settings, 3);
   REQUIRE(controller.pulses_run());
   return controller;

@@ -17,7 +17,7 @@ using Change = void (*)(tests::SimulatedMotor&);
 
 struct Bench {
   tests::SimulatedMotors simulated;
-  protocol::ParameterSet parameters = tests::omni_parameters();
+  protocol::ParameterSet parameters = tests::confirmed_omni_parameters();
   float supply_V = board::supply_nominal_V;
   control::Triple counts_per_period{};
 
@@ -25,13 +25,13 @@ struct Bench {
     const control::Settings settings = control::prepare(parameters);
     control::SelfTestPulses pulses;
     control::Triple requested_V{};
-    pulses.start();
+    pulses.start(control::PulseSize::of(settings.motor_model.resistance_ohm));
     for (float period = 0.0f; pulses.runs(); ++period) {
       std::array<std::int32_t, 3> counts{};
       for (std::size_t i = 0; i < 3; ++i) counts[i] = static_cast<std::int32_t>(period * counts_per_period[i]);
-      requested_V = pulses.step(simulated.step(requested_V), counts,
-                                {settings.motor_model.resistance_ohm, settings.motors.current_limit_A, supply_V,
-                                 board::omni_driver.bridge_dead_time_part()});
+      requested_V =
+          pulses.step(simulated.step(requested_V), counts,
+                      {settings.motors.current_limit_A, supply_V, board::omni_driver.bridge_dead_time_part()});
     }
     return link::judge(pulses.round(), settings);
   }
@@ -144,8 +144,8 @@ TEST_CASE("a half-shorted winding, a wrong sensor gain or an open motor fails th
   }
   const auto open = with_second([](auto& motor) { motor.is_open = true; });
   CHECK(failed(open));
-  CHECK(open.motors[1].figure == doctest::Approx(10 * 2.18));
-  CHECK(failed(with_second([](auto& motor) { motor.sensor_gain = -1.0f; })));
+  CHECK(open.motors[1].figure == doctest::Approx(PulseJudgement::missing_ohm));
+  CHECK(with_second([](auto& motor) { motor.sensor_gain = -1.0f; }).motors[1].result == SelfTestResult::wrong_sign);
 }
 
 TEST_CASE("a motor with the right current in only one direction fails its self-test item") {

@@ -18,7 +18,7 @@ namespace inkwell::test {
 struct SelfTestBoard {
   link::Link& link = fresh_link();
   control::Controller controller{tests::board_limits};
-  control::Settings settings = control::prepare(tests::omni_parameters());
+  control::Settings settings = control::prepare(tests::confirmed_omni_parameters());
   control::Samples samples = tests::samples_at_rest();
   float analog_supply_V = 3.3f;
   bool analog_supply_is_right = true;

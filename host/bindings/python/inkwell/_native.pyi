@@ -67,6 +67,8 @@ class Pose:
     @property
     def limited_by_speed(self) -> bool: ...
     @property
+    def limited_by_motors(self) -> bool: ...
+    @property
     def button_1(self) -> bool: ...
     @property
     def button_2(self) -> bool: ...
@@ -139,6 +141,9 @@ class Test(enum.Enum):
     MOVED = 3
     NO_PART = 4
     BROKEN_OFF = 5
+    MISSING = 6
+    UNKNOWN_MOTOR = 7
+    WRONG_SIGN = 8
 
 class TestItem:
     """An item of the board's self-test."""

@@ -14,16 +14,17 @@ namespace {
 using namespace inkwell;
 using control::PulseRound;
 using control::PulseScale;
+using control::PulseSize;
 using control::SelfTestPulses;
 using control::Triple;
 
 constexpr Triple resistance_ohm{2.0f, 4.0f, 40.0f}, limit_A{2.5f, 0.5f, 2.5f};
 constexpr float dead_V = 0.4f;
-constexpr PulseScale scale{resistance_ohm, limit_A, 20.0f, dead_V / 20.0f};
+constexpr PulseScale scale{limit_A, 20.0f, dead_V / 20.0f};
 
 std::vector<Triple> requested_V(SelfTestPulses& pulses, const PulseScale& with) {
   std::vector<Triple> requested;
-  pulses.start();
+  pulses.start(PulseSize::of(resistance_ohm));
   while (pulses.runs() && requested.size() < 10'000) requested.push_back(pulses.step({}, {}, with));
   return requested;
 }
@@ -50,11 +51,25 @@ TEST_CASE("each motor by itself gets low, high, and the same the other way round
   }
 }
 
+TEST_CASE("the pulses of a motor with a small resistance last longer, because its time constant is longer") {
+  SelfTestPulses pulses;
+  const PulseSize size = PulseSize::of({2.0f, 1.0f, 0.1f});
+  CHECK(size.level_periods == std::array<std::uint32_t, 3>{20, 40, 60});
+  pulses.start(size);
+  std::array<int, 3> driven_periods{};
+  while (pulses.runs()) {
+    const Triple requested_V = pulses.step({}, {}, scale);
+    for (std::size_t i = 0; i < 3; ++i) driven_periods[i] += requested_V[i] != 0.0f;
+  }
+  CHECK(driven_periods == std::array<int, 3>{80, 160, 240});
+  CHECK(pulses.round().motors[2].levels_s == doctest::Approx(0.012));
+}
+
 TEST_CASE("a motor with a very small current limit gets pulses that are large enough to measure its resistance") {
   constexpr Triple little_for_2_A{2.5f, 0.01f, 2.5f};
   SelfTestPulses pulses;
   float largest_V = 0.0f;
-  for (const Triple& requested : requested_V(pulses, {resistance_ohm, little_for_2_A, 20.0f, dead_V / 20.0f}))
+  for (const Triple& requested : requested_V(pulses, {little_for_2_A, 20.0f, dead_V / 20.0f}))
     largest_V = std::max(largest_V, requested[1]);
   CHECK(largest_V == doctest::Approx(0.3f * resistance_ohm[1] + dead_V));
   CHECK(pulses.round().motors[1].takes_part);
@@ -63,8 +78,7 @@ TEST_CASE("a motor with a very small current limit gets pulses that are large en
 TEST_CASE("a motor whose current limit is zero gets no pulse and takes no part") {
   constexpr Triple no_room_for_2_A{2.5f, 0.0f, 2.5f};
   SelfTestPulses pulses;
-  for (const Triple& requested : requested_V(pulses, {resistance_ohm, no_room_for_2_A, 20.0f, 0.02f}))
-    CHECK(requested[1] == 0.0f);
+  for (const Triple& requested : requested_V(pulses, {no_room_for_2_A, 20.0f, 0.02f})) CHECK(requested[1] == 0.0f);
   CHECK(pulses.round().motors[0].takes_part);
   CHECK_FALSE(pulses.round().motors[1].takes_part);
   CHECK(pulses.round().motors[2].takes_part);
@@ -77,7 +91,7 @@ TEST_CASE("the means are of settled currents, of all sensors, and of this round 
   motors.motors[0].resistance_ohm = 2.0f;
   for (int round = 0; round < 2; ++round) {
     Triple requested_V{};
-    pulses.start();
+    pulses.start(PulseSize::of(resistance_ohm));
     while (pulses.runs()) requested_V = pulses.step(motors.step(requested_V), {}, scale);
   }
   const auto& means_A = pulses.round().motors[0].current_A;
@@ -90,7 +104,7 @@ TEST_CASE("the means are of settled currents, of all sensors, and of this round 
 
 TEST_CASE("how far its encoder has come is noted for each motor") {
   SelfTestPulses pulses;
-  pulses.start();
+  pulses.start(PulseSize::of(resistance_ohm));
   std::int32_t period = 0;
   for (; pulses.runs(); ++period) pulses.step({}, {5 + period, -2 * period, 7}, scale);
   CHECK(pulses.round().motors[0].moved_counts == 79);
@@ -100,7 +114,7 @@ TEST_CASE("how far its encoder has come is noted for each motor") {
 
 TEST_CASE("after a stop, the self-test pulses restart with the first motor") {
   SelfTestPulses pulses;
-  pulses.start();
+  pulses.start(PulseSize::of(resistance_ohm));
   for (int i = 0; i < 130; ++i) pulses.step({}, {}, scale);
   pulses.stop();
   CHECK_FALSE(pulses.runs());

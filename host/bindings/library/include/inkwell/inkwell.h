@@ -199,6 +199,7 @@ enum inkwell_limit {
   INKWELL_LIMIT_CHANGE = 4,  /* the force changes at the rate force_change_N_per_s */
   INKWELL_LIMIT_ENERGY = 8,  /* the energy reserve is used up; the driving component is scaled down */
   INKWELL_LIMIT_HEAT = 16,   /* a hot motor is at its reduced current limit; all motors are scaled down together */
+  INKWELL_LIMIT_MOTORS = 64, /* a motor is missing or unknown, so no motor receives current for the force */
   INKWELL_LIMIT_SPEED = 32   /* the probe is close to the speed limit; the driving component is scaled down */
 };
 
@@ -419,9 +420,12 @@ typedef enum inkwell_test INKWELL_AS_INT {
   INKWELL_TEST_NOT_DONE = 0, /* not checked, or not checkable while another item fails */
   INKWELL_TEST_PASSED = 1,
   INKWELL_TEST_FAILED = 2,
-  INKWELL_TEST_MOVED = 3,     /* not done: the arm moved too fast */
-  INKWELL_TEST_NO_PART = 4,   /* not done: a motor with a current limit of 0 is not used */
-  INKWELL_TEST_BROKEN_OFF = 5 /* not done: no supply, or another fault interrupted the test */
+  INKWELL_TEST_MOVED = 3,         /* not done: the arm moved too fast */
+  INKWELL_TEST_NO_PART = 4,       /* not done: a motor with a current limit of 0 is not used */
+  INKWELL_TEST_BROKEN_OFF = 5,    /* not done: no supply, or another fault interrupted the test */
+  INKWELL_TEST_MISSING = 6,       /* a motor that is not connected; the motors receive no current for the force */
+  INKWELL_TEST_UNKNOWN_MOTOR = 7, /* a motor of another resistance; the motors receive no current for the force */
+  INKWELL_TEST_WRONG_SIGN = 8     /* the current has the wrong sign; this is a failure */
 } inkwell_test;
 
 /* An item of the self-test. The texts are valid until the process exits. */
