@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "host/client/local/interruption.hpp"
+
 namespace inkwell::virtual_board {
 namespace {
 
@@ -48,8 +50,9 @@ ControlServer::~ControlServer() {
 
 void ControlServer::accept_clients() {
   for (;;) {
-    local::Descriptor socket(::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC));
-    const bool has_failed = !socket.is_open() && errno != EINTR && errno != ECONNABORTED;
+    local::Descriptor socket(
+        local::repeat_interrupted([&] { return ::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC); }));
+    const bool has_failed = !socket.is_open() && errno != ECONNABORTED;
     {
       const std::lock_guard lock(mutex_);
       if (closing_) return;
@@ -85,8 +88,8 @@ void ControlServer::serve(Client& client) {
   std::array<char, 4096> chunk;
   std::string received;
   for (;;) {
-    const ssize_t count = ::recv(client.socket.number(), chunk.data(), chunk.size(), 0);
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count =
+        local::repeat_interrupted([&] { return ::recv(client.socket.number(), chunk.data(), chunk.size(), 0); });
     if (count <= 0) break;
     received.append(chunk.data(), static_cast<std::size_t>(count));
     if (!serve_lines(client.socket.number(), received)) break;

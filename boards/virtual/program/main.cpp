@@ -1,7 +1,5 @@
 // Main program of virtual-board. The program runs unchanged firmware on the virtual board.
 #include <atomic>
-#include <csignal>
-#include <cstdio>
 #include <exception>
 #include <optional>
 #include <string>
@@ -10,6 +8,8 @@
 
 #include "boards/virtual/program/control_server.hpp"
 #include "boards/virtual/program/stream_server.hpp"
+#include "host/client/local/ending_signals.hpp"
+#include "host/client/local/output.hpp"
 
 #include "boards/virtual/program/board.hpp"
 #include "boards/virtual/program/log.hpp"
@@ -23,22 +23,14 @@ static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal");
 
 void request_end(int) { end_requested = true; }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
+  using namespace inkwell;
   using namespace inkwell::virtual_board;
   const CommandLine command_line = read_command_line(argc, argv);
   if (!command_line.options) return command_line.exit_code;
   const Options& options = *command_line.options;
 
-  struct sigaction action {};
-  action.sa_handler = request_end;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  struct sigaction of_hang_up {};
-  sigaction(SIGHUP, nullptr, &of_hang_up);
-  if (of_hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores SIGHUP
-
+  const local::EndingSignalsHandler handler(request_end);
   try {
     PrivateSockets sockets;
     ControlServer server(sockets.address_of(options.control, "control"));
@@ -52,7 +44,7 @@ int main(int argc, char** argv) {
     fmt::print("ready usbip={} control={}", announced(board.usb().address()), announced(server.address()));
     if (gdb) fmt::print(" gdb={}", announced(gdb->address()));
     fmt::print("{}\n", uarts.announcement());
-    std::fflush(stdout);
+    local::flush_output();
     const int exit_code = Simulation(options, board, server, gdb ? &*gdb : nullptr, uarts).run(end_requested);
     if (options.profile) board.profile().write(*options.profile);
     return exit_code;
@@ -60,4 +52,11 @@ int main(int argc, char** argv) {
     log_line(error.what());
     return 1;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int exit_code = run(argc, argv);
+  return inkwell::local::checked_exit_code("virtual-board", exit_code);
 }

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "host/client/local/interruption.hpp"
+
 namespace inkwell::virtual_board {
 namespace {
 
@@ -28,10 +30,7 @@ struct flock lock_of(off_t byte, short type) {
 
 bool set_lock(int file, off_t byte, short type, bool waits = false) {
   struct flock lock = lock_of(byte, type);
-  int result = 0;
-  do result = ::fcntl(file, waits ? F_OFD_SETLKW : F_OFD_SETLK, &lock);
-  while (result != 0 && errno == EINTR);
-  return result == 0;
+  return local::repeat_interrupted([&] { return ::fcntl(file, waits ? F_OFD_SETLKW : F_OFD_SETLK, &lock); }) == 0;
 }
 
 std::runtime_error failure(const std::filesystem::path& file, const std::string& what) {

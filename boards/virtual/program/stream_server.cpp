@@ -12,6 +12,8 @@
 #include <iterator>
 #include <utility>
 
+#include "host/client/local/interruption.hpp"
+
 namespace inkwell::virtual_board {
 namespace {
 
@@ -51,8 +53,9 @@ StreamServer::~StreamServer() {
 
 void StreamServer::serve() {
   for (;;) {
-    local::Descriptor socket(::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC));
-    const bool has_failed = !socket.is_open() && errno != EINTR && errno != ECONNABORTED;
+    local::Descriptor socket(
+        local::repeat_interrupted([&] { return ::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC); }));
+    const bool has_failed = !socket.is_open() && errno != ECONNABORTED;
     const int client = socket.number();
     {
       const std::lock_guard lock(mutex_);
@@ -74,8 +77,7 @@ void StreamServer::receive_from(int client) {
   std::array<char, 4096> chunk;
   bool is_welcome = false;
   while (wait_for_room(client)) {
-    const ssize_t count = ::recv(client, chunk.data(), chunk.size(), 0);
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = local::repeat_interrupted([&] { return ::recv(client, chunk.data(), chunk.size(), 0); });
     if (count <= 0) break;
     const std::string_view bytes(chunk.data(), static_cast<std::size_t>(count));
     // One check is sufficient, because a browser sends the start of its request in one piece.
@@ -102,7 +104,7 @@ bool StreamServer::wait_for_room(int client) {
   while (!closing_ && arrived_.bytes.size() >= unread_maximum) {
     if (room_.wait_for(lock, poll_interval) == std::cv_status::no_timeout) continue;
     pollfd connection{client, POLLRDHUP, 0};
-    const bool is_gone = ::poll(&connection, 1, 0) > 0;
+    const bool is_gone = local::repeat_interrupted([&] { return ::poll(&connection, 1, 0); }) > 0;
     if (is_gone && others_wait()) return false;
   }
   return !closing_;
@@ -110,7 +112,7 @@ bool StreamServer::wait_for_room(int client) {
 
 bool StreamServer::others_wait() const {
   pollfd connection{listener_.descriptor(), POLLIN, 0};
-  return ::poll(&connection, 1, 0) > 0;
+  return local::repeat_interrupted([&] { return ::poll(&connection, 1, 0); }) > 0;
 }
 
 StreamServer::Arrived StreamServer::take() {

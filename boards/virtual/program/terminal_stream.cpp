@@ -16,6 +16,8 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/interruption.hpp"
+
 namespace inkwell::virtual_board {
 namespace {
 
@@ -60,7 +62,7 @@ void TerminalStream::start() {
 
 TerminalStream::~TerminalStream() {
   const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written = ::write(ending_, &one, sizeof one);
+  local::repeat_interrupted([&] { return ::write(ending_, &one, sizeof one); });
   thread_.join();
   ::close(ending_);
   if (link_.empty()) return;
@@ -75,11 +77,12 @@ void TerminalStream::read() {
   for (;;) {
     const bool is_full = has_no_room();
     std::array<pollfd, 2> descriptors{{{is_full ? -1 : input_, POLLIN, 0}, {ending_, POLLIN, 0}}};
-    if (::poll(descriptors.data(), descriptors.size(), is_full ? poll_interval_ms : -1) < 0) continue;
+    const int wait_ms = is_full ? poll_interval_ms : -1;
+    local::repeat_interrupted([&] { return ::poll(descriptors.data(), descriptors.size(), wait_ms); });
     if (descriptors[1].revents != 0) return;
     if (is_full) continue;
-    const ssize_t count = ::read(input_, chunk.data(), chunk.size());
-    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    const ssize_t count = local::repeat_interrupted([&] { return ::read(input_, chunk.data(), chunk.size()); });
+    if (count < 0 && errno == EAGAIN) continue;
     if (count <= 0) return;  // end of the input
     {
       const std::lock_guard lock(mutex_);
@@ -101,8 +104,7 @@ ByteStream::Arrived TerminalStream::take() {
 
 void TerminalStream::send(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t count = ::write(output_, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = local::repeat_interrupted([&] { return ::write(output_, bytes.data(), bytes.size()); });
     if (count <= 0) return;
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }

@@ -18,6 +18,8 @@
 #include <string>
 #include <utility>
 
+#include "host/client/local/interruption.hpp"
+
 #include "boards/virtual/usb/usbip_replies.hpp"
 
 namespace inkwell::virtual_board {
@@ -99,7 +101,7 @@ void UsbIpServer::withdraw() {
 void UsbIpServer::wake() {
   const std::uint64_t one = 1;
   // A failed write is ignored, because a full counter wakes the thread.
-  [[maybe_unused]] const auto written = ::write(wake_.number(), &one, sizeof one);
+  local::repeat_interrupted([&] { return ::write(wake_.number(), &one, sizeof one); });
 }
 
 std::optional<DeviceDescription> UsbIpServer::offered() {
@@ -133,7 +135,8 @@ void UsbIpServer::run() {
     }
     const bool is_exchanging = exchange != 0;
     const int wait_ms = is_exchanging ? 0 : accepts ? -1 : static_cast<int>(local::accept_rest.count());
-    const int ready = ::poll(descriptors.data(), descriptors.size(), wait_ms);
+    const int ready =
+        local::repeat_interrupted([&] { return ::poll(descriptors.data(), descriptors.size(), wait_ms); });
     if (ready < 0 || (ready == 0 && !is_exchanging)) continue;
     if (ready == 0) {  // all data is received
       const std::lock_guard lock(mutex_);
@@ -143,7 +146,7 @@ void UsbIpServer::run() {
     }
     if (descriptors[0].revents != 0) {
       std::uint64_t count = 0;
-      [[maybe_unused]] const auto read = ::read(wake_.number(), &count, sizeof count);
+      local::repeat_interrupted([&] { return ::read(wake_.number(), &count, sizeof count); });
       const std::lock_guard lock(mutex_);
       if (stop_) return;
       exchange = exchanges_requested_;
@@ -162,7 +165,8 @@ void UsbIpServer::run() {
 
 void UsbIpServer::accept_connections() {
   while (true) {
-    local::Descriptor socket(::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    local::Descriptor socket(local::repeat_interrupted(
+        [&] { return ::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC); }));
     if (!socket.is_open()) {
       if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM)
         accept_again_at_ = std::chrono::steady_clock::now() + local::accept_rest;
@@ -193,8 +197,9 @@ void UsbIpServer::end(Connection& connection) {
 
 void UsbIpServer::receive(Connection& connection) {
   std::array<std::byte, receive_bytes> buffer;
-  const ssize_t count = ::recv(connection.socket.number(), buffer.data(), buffer.size(), 0);
-  if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) {
+  const ssize_t count =
+      local::repeat_interrupted([&] { return ::recv(connection.socket.number(), buffer.data(), buffer.size(), 0); });
+  if (count == 0 || (count < 0 && errno != EAGAIN)) {
     end(connection);
     return;
   }
@@ -210,10 +215,12 @@ void UsbIpServer::receive(Connection& connection) {
 
 void UsbIpServer::send(Connection& connection) {
   while (!connection.dead && connection.sent < connection.to_send.size()) {
-    const ssize_t count = ::send(connection.socket.number(), connection.to_send.data() + connection.sent,
-                                 connection.to_send.size() - connection.sent, MSG_NOSIGNAL);
+    const ssize_t count = local::repeat_interrupted([&] {
+      return ::send(connection.socket.number(), connection.to_send.data() + connection.sent,
+                    connection.to_send.size() - connection.sent, MSG_NOSIGNAL);
+    });
     if (count < 0) {
-      if (errno != EAGAIN && errno != EINTR) end(connection);
+      if (errno != EAGAIN) end(connection);
       break;
     }
     connection.sent += static_cast<std::size_t>(count);

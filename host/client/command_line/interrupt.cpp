@@ -5,21 +5,13 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
+void note_interruption(int) { interrupted = 1; }
+
 }  // namespace
 
-InterruptGuard::InterruptGuard() {
-  interrupted = 0;
-  struct sigaction note {};
-  note.sa_handler = [](int) { interrupted = 1; };
-  note.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &note, &interrupt_before_);
-  sigaction(SIGTERM, &note, &terminate_before_);
-}
+InterruptGuard::InterruptGuard() : handler_(note_interruption, static_cast<int>(SA_RESETHAND)) {}
 
-InterruptGuard::~InterruptGuard() {
-  sigaction(SIGINT, &interrupt_before_, nullptr);
-  sigaction(SIGTERM, &terminate_before_, nullptr);
-}
+InterruptGuard::~InterruptGuard() { interrupted = 0; }
 
 bool InterruptGuard::is_interrupted() const { return interrupted != 0; }
 

@@ -1,23 +1,21 @@
-// Handles Ctrl-C as a request to stop.
+// Handles Ctrl-C, SIGTERM and a closed terminal as a request to stop.
 #pragma once
 
-#include <csignal>
+#include "host/client/local/ending_signals.hpp"
 
 namespace inkwell::command_line {
 
-/// While an InterruptGuard exists, the first SIGINT or SIGTERM is only recorded. A second signal terminates the
-/// program.
+/// While an InterruptGuard exists, the first SIGINT, SIGTERM or SIGHUP is only recorded. A second signal of the
+/// same kind terminates the program.
 class InterruptGuard {
  public:
   InterruptGuard();
   ~InterruptGuard();
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
 
   bool is_interrupted() const;
 
  private:
-  struct sigaction interrupt_before_, terminate_before_;
+  local::EndingSignalsHandler handler_;
 };
 
 }  // namespace inkwell::command_line

@@ -9,6 +9,7 @@
 #include "host/client/command_line/connection.hpp"
 #include "host/client/command_line/help.hpp"
 #include "host/client/command_line/wrong_value.hpp"
+#include "host/client/local/output.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -16,14 +17,12 @@ namespace {
 constexpr int success = 0, failure = 1, wrong_usage = 2;
 
 int complain(const CLI::App& program, const std::exception& error, int exit_code) {
-  fmt::print(stderr, "{}: {}\n", program.get_name(), protocol::plain_lines(error.what()));
+  local::print_error("{}: {}\n", program.get_name(), protocol::plain_lines(error.what()));
   return exit_code;
 }
 
-}  // namespace
-
-int run_program(CLI::App& program, int argument_count, char** arguments, const Action& action,
-                const std::function<void()>& check) {
+int run_unchecked(CLI::App& program, int argument_count, char** arguments, const Action& action,
+                  const std::function<void()>& check) {
   try {
     program.parse(argument_count, arguments);
     if (check) check();
@@ -47,8 +46,17 @@ int run_program(CLI::App& program, int argument_count, char** arguments, const A
     return complain(program, device::NoDevice(fmt::format("{} Choose one with --serial NUMBER.", error.what())),
                     failure);
   } catch (const std::exception& error) {
+    if (local::is_output_lost()) return failure;  // the caller reports the reason
     return complain(program, error, failure);
   }
+}
+
+}  // namespace
+
+int run_program(CLI::App& program, int argument_count, char** arguments, const Action& action,
+                const std::function<void()>& check) {
+  const int exit_code = run_unchecked(program, argument_count, arguments, action, check);
+  return local::checked_exit_code(program.get_name(), exit_code);
 }
 
 }  // namespace inkwell::command_line

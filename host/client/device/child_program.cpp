@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "host/client/local/descriptor.hpp"
+#include "host/client/local/interruption.hpp"
 
 #include "host/client/device/spawn_actions.hpp"
 
@@ -40,8 +40,7 @@ pid_t spawn(const ChildProgram& program, int output) {
 
 int wait_for(pid_t child) {
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  local::repeat_interrupted([&] { return waitpid(child, &status, 0); });
   return WIFSIGNALED(status) ? killed_by + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
@@ -65,8 +64,8 @@ int run_child_program(const ChildProgram& program, const std::function<void(std:
   to_parent = local::Descriptor();
   std::array<char, 4096> chunk;
   for (;;) {
-    const ssize_t length = read(from_child.number(), chunk.data(), chunk.size());
-    if (length < 0 && errno == EINTR) continue;
+    const ssize_t length =
+        local::repeat_interrupted([&] { return read(from_child.number(), chunk.data(), chunk.size()); });
     if (length <= 0) break;
     on_output({chunk.data(), static_cast<std::size_t>(length)});
   }

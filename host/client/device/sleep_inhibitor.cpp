@@ -8,11 +8,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <optional>
 #include <system_error>
 
 #include "host/client/local/descriptor.hpp"
+#include "host/client/local/interruption.hpp"
 
 #include "host/client/device/spawn_actions.hpp"
 
@@ -78,8 +78,7 @@ class RunningInhibitor {
     // If the program has already reaped the child, its process number may belong to another process.
     if (child_ != 0 && waitpid(child_, nullptr, WNOHANG) == 0) {
       kill(child_, SIGKILL);  // the child may still wait for logind
-      while (waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
-      }
+      local::repeat_interrupted([&] { return waitpid(child_, nullptr, 0); });
     }
   }
   RunningInhibitor(const RunningInhibitor&) = delete;

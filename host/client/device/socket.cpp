@@ -5,7 +5,6 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 
 #include <cerrno>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "host/client/device/error.hpp"
+#include "host/client/local/interruption.hpp"
 
 namespace inkwell::device {
 
@@ -24,8 +24,7 @@ bool connect_socket(int descriptor, const addrinfo& address) {
   if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return true;
   if (errno != EINTR) return false;
   pollfd connection{descriptor, POLLOUT, 0};
-  while (poll(&connection, 1, -1) < 0 && errno == EINTR) {
-  }
+  local::repeat_interrupted([&] { return poll(&connection, 1, -1); });
   int reason = 0;
   socklen_t size = sizeof reason;
   getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &reason, &size);
@@ -38,7 +37,9 @@ local::Descriptor connect_to_port(const SocketAddress& server) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  if (const int code = getaddrinfo(server.host.c_str(), std::to_string(server.port).c_str(), &hints, &found); code != 0)
+  const int code = local::repeat_interrupted(
+      [&] { return getaddrinfo(server.host.c_str(), std::to_string(server.port).c_str(), &hints, &found); });
+  if (code != 0)
     throw Error(fmt::format("The host name {} is not known ({}). Check the spelling or give an address.", server.host,
                             gai_strerror(code)));
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, &freeaddrinfo);
@@ -66,31 +67,33 @@ Socket::Socket(const SocketAddress& server)
   own_ = process::OwnDescriptor(descriptor_.number());
 }
 
-void Socket::wait_at_most(std::optional<std::chrono::milliseconds> limit) {
-  const auto microseconds = std::chrono::microseconds(limit.value_or(std::chrono::milliseconds(0))).count();
-  const timeval wait{microseconds / 1'000'000, microseconds % 1'000'000};  // 0 means no limit
-  setsockopt(descriptor_.number(), SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
+void Socket::wait_at_most(std::optional<std::chrono::milliseconds> limit) { limit_ = limit; }
+
+bool Socket::is_readable_in_time() const {
+  if (!limit_) return true;
+  pollfd input{descriptor_.number(), POLLIN, 0};
+  return local::repeat_interrupted(*limit_, [&](std::chrono::milliseconds rest) {
+           return poll(&input, 1, static_cast<int>(rest.count()));
+         }) != 0;
 }
 
 void Socket::send(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t sent = ::send(descriptor_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
+    const ssize_t sent = local::repeat_interrupted(
+        [&] { return ::send(descriptor_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL); });
     if (sent <= 0) throw Disconnected(fmt::format("The connection to {} was lost. Start the board again.", peer_));
     bytes = bytes.subspan(static_cast<std::size_t>(sent));
   }
 }
 
 std::size_t Socket::receive_some(std::span<std::byte> bytes) {
-  for (;;) {
-    const ssize_t received = recv(descriptor_.number(), bytes.data(), bytes.size(), 0);
-    if (received > 0) return static_cast<std::size_t>(received);
-    if (received < 0 && errno == EINTR) continue;
-    if (received < 0 && errno == EAGAIN)
-      throw Error(fmt::format(
-          "The program at {} does not answer. Check that virtual-board printed this port for this connection.", peer_));
-    throw Disconnected(fmt::format("The program at {} closed the connection. Start the board again.", peer_));
-  }
+  if (!is_readable_in_time())
+    throw Error(fmt::format(
+        "The program at {} does not answer. Check that virtual-board printed this port for this connection.", peer_));
+  const ssize_t received =
+      local::repeat_interrupted([&] { return recv(descriptor_.number(), bytes.data(), bytes.size(), 0); });
+  if (received > 0) return static_cast<std::size_t>(received);
+  throw Disconnected(fmt::format("The program at {} closed the connection. Start the board again.", peer_));
 }
 
 void Socket::receive(std::span<std::byte> bytes) {

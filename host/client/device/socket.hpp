@@ -31,9 +31,12 @@ class Socket {
   void shut_down();
 
  private:
+  bool is_readable_in_time() const;
+
   local::Descriptor descriptor_;
   process::OwnDescriptor own_;  ///< closes the connection in forked children
   std::string peer_;
+  std::optional<std::chrono::milliseconds> limit_;
 };
 
 }  // namespace inkwell::device

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "host/client/local/interruption.hpp"
 #include "host/client/process/fork.hpp"
 #include "protocol/plain_text.hpp"
 #include "protocol/report_table.hpp"
@@ -154,7 +155,7 @@ class HidHandle {
   template <class Call>
   Result call(Call call) {
     const std::lock_guard lock(mutex_);
-    const int length = call(device_.get());
+    const int length = local::repeat_interrupted([&] { return call(device_.get()); });
     return {length, length < 0 ? narrow(hid_error(device_.get())) : std::string()};
   }
 
@@ -181,7 +182,9 @@ class UsbTransport : public Transport {
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
     const auto result = inputs_.call([&](hid_device* device) {
-      return hid_read_timeout(device, data(report), report.size(), static_cast<int>(timeout.count()));
+      return local::repeat_interrupted(timeout, [&](std::chrono::milliseconds rest) {
+        return hid_read_timeout(device, data(report), report.size(), static_cast<int>(rest.count()));
+      });
     });
     if (result.length < 0) throw Disconnected(with_detail(unplugged, result.detail));  // only after a disconnection
     return static_cast<std::size_t>(result.length);

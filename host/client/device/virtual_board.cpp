@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -26,6 +25,7 @@
 #include "boards/known/boards.hpp"
 #include "host/client/device/address.hpp"
 #include "host/client/installation/installed_paths.hpp"
+#include "host/client/local/interruption.hpp"
 #include "host/client/process/fork.hpp"
 #include "protocol/image_identity.hpp"
 
@@ -173,8 +173,7 @@ struct VirtualBoard::Implementation {
   void read_log() {
     std::array<char, 4096> chunk;
     for (;;) {
-      const ssize_t length = read(log.read_end, chunk.data(), chunk.size());
-      if (length < 0 && errno == EINTR) continue;
+      const ssize_t length = local::repeat_interrupted([&] { return read(log.read_end, chunk.data(), chunk.size()); });
       if (length <= 0) return;
       const std::lock_guard lock(mutex);
       newest_log.append(chunk.data(), static_cast<std::size_t>(length));
@@ -189,7 +188,8 @@ struct VirtualBoard::Implementation {
       pollfd descriptor{output.read_end, POLLIN, 0};
       if (poll(&descriptor, 1, 100) <= 0) continue;
       char character;
-      if (read(output.read_end, &character, 1) != 1 || character == '\n') break;
+      if (local::repeat_interrupted([&] { return read(output.read_end, &character, 1); }) != 1 || character == '\n')
+        break;
       line += character;
     }
     return line;

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "host/client/local/folder_rights.hpp"
+#include "host/client/local/interruption.hpp"
 #include "host/client/local/unix_name.hpp"
 
 namespace inkwell::local {
@@ -62,11 +63,23 @@ void remove_stale_socket(const SocketAddress& where, std::string_view option) {
   ::unlink(where.path.c_str());
 }
 
+constexpr std::string_view this_computer_ipv6 = "::1";
+
+int family_of(const SocketAddress& where) {
+  return where.is_unix() ? AF_UNIX : where.host == this_computer_ipv6 ? AF_INET6 : AF_INET;
+}
+
+/// The address of a port of this computer as a system call argument.
+union PortName {
+  sockaddr any;
+  sockaddr_in ipv4;
+  sockaddr_in6 ipv6;
+};
+
 }  // namespace
 
 Listener::Listener(SocketAddress where, std::string_view option)
-    : address_(std::move(where)),
-      socket_(::socket(address_.is_unix() ? AF_UNIX : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    : address_(std::move(where)), socket_(::socket(family_of(address_), SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (!socket_.is_open()) throw refusal(address_, option, std::strerror(errno));
   address_.is_unix() ? listen_on_path(option) : listen_on_port(option);
 }
@@ -79,22 +92,30 @@ Listener::~Listener() {
 }
 
 void Listener::listen_on_port(std::string_view option) {
-  address_.host = "127.0.0.1";
+  const bool is_ipv6 = family_of(address_) == AF_INET6;
+  if (!is_ipv6) address_.host = this_computer;
   const int on = 1;
   ::setsockopt(socket_.number(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in name{};
-  name.sin_family = AF_INET;
-  name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  name.sin_port = htons(address_.port);
-  socklen_t size = sizeof name;
-  if (::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&name), size) != 0 ||
-      ::listen(socket_.number(), waiting_clients) != 0) {
+  PortName name{};
+  if (is_ipv6)
+    name.ipv6 = {.sin6_family = AF_INET6,
+                 .sin6_port = htons(address_.port),
+                 .sin6_flowinfo = 0,
+                 .sin6_addr = in6addr_loopback,
+                 .sin6_scope_id = 0};
+  else
+    name.ipv4 = {.sin_family = AF_INET,
+                 .sin_port = htons(address_.port),
+                 .sin_addr = {.s_addr = htonl(INADDR_LOOPBACK)},
+                 .sin_zero = {}};
+  socklen_t size = is_ipv6 ? sizeof name.ipv6 : sizeof name.ipv4;
+  if (::bind(socket_.number(), &name.any, size) != 0 || ::listen(socket_.number(), waiting_clients) != 0) {
     const std::string reason =
         errno == EADDRINUSE ? std::string("another program listens there") : std::string(std::strerror(errno));
     throw refusal(address_, option, reason + ". Choose another port, or 0 for any free one");
   }
-  ::getsockname(socket_.number(), reinterpret_cast<sockaddr*>(&name), &size);
-  address_.port = ntohs(name.sin_port);
+  ::getsockname(socket_.number(), &name.any, &size);
+  address_.port = ntohs(is_ipv6 ? name.ipv6.sin6_port : name.ipv4.sin_port);
 }
 
 void Listener::listen_on_path(std::string_view option) {
@@ -120,8 +141,7 @@ void Listener::listen_on_path(std::string_view option) {
 
 bool send_all(int socket, std::string_view text) {
   while (!text.empty()) {
-    const ssize_t sent = ::send(socket, text.data(), text.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
+    const ssize_t sent = repeat_interrupted([&] { return ::send(socket, text.data(), text.size(), MSG_NOSIGNAL); });
     if (sent <= 0) return false;
     text.remove_prefix(static_cast<std::size_t>(sent));
   }

@@ -14,8 +14,8 @@ namespace inkwell::local {
 /// Pause before the next accept if the system has refused to open another file.
 inline constexpr std::chrono::milliseconds accept_rest{20};
 
-/// A TCP port listens on 127.0.0.1, where every user of this computer can connect. Only the owner can connect to a Unix
-/// socket, because its mode is 0600 from the start.
+/// A TCP port listens on 127.0.0.1, or on ::1 if that is the host of the address, where every user of this computer can
+/// connect. Only the owner can connect to a Unix socket, because its mode is 0600 from the start.
 class Listener {
  public:
   /// Port 0 selects a free port. A Unix socket from another program is replaced if this user owns the socket and no

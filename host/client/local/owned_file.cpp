@@ -14,7 +14,9 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/interruption.hpp"
 #include "host/client/local/process_name.hpp"
+#include "host/client/local/replaced_file.hpp"
 
 namespace inkwell::local {
 namespace {
@@ -22,18 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 std::system_error failure(const fs::path& path) { return {errno, std::generic_category(), path.string()}; }
-
-/// Follows a symbolic link, because the target must be replaced instead of the link.
-fs::path resolve_symbolic_links(fs::path path) {
-  constexpr int symbolic_links_maximum = 40;  // limit of Linux
-  std::error_code code;
-  for (int i = 0; i < symbolic_links_maximum && fs::is_symlink(path, code); ++i) {
-    const fs::path target = fs::read_symlink(path, code);
-    if (code) break;
-    path = path.parent_path() / target;
-  }
-  return path;
-}
 
 struct stat status_of(const Descriptor& file) {
   struct stat status {};
@@ -70,18 +60,21 @@ std::optional<pid_t> owner_of(const Descriptor& file) {
 /// Opens even a file without write permission, because a file is replaceable if its folder is writable.
 Descriptor open_existing(const fs::path& path) {
   constexpr int flags = O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
-  Descriptor file(::open(path.c_str(), O_RDWR | flags));
-  if (!file.is_open() && errno != ENOENT) file = Descriptor(::open(path.c_str(), O_RDONLY | flags));
+  const auto open = [&](int access) {
+    return Descriptor(repeat_interrupted([&] { return ::open(path.c_str(), access | flags); }));
+  };
+  Descriptor file = open(O_RDWR);
+  if (!file.is_open() && errno != ENOENT) file = open(O_RDONLY);
   if (!file.is_open() && errno != ENOENT) throw failure(path);
   return file;
 }
 
 void write_all(const Descriptor& file, std::span<const std::byte> content, const fs::path& path) {
-  if (::ftruncate(file.number(), 0) != 0) throw failure(path);
+  if (repeat_interrupted([&] { return ::ftruncate(file.number(), 0); }) != 0) throw failure(path);
   for (std::size_t done = 0; done < content.size();) {
-    const ssize_t count =
-        ::pwrite(file.number(), content.data() + done, content.size() - done, static_cast<off_t>(done));
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = repeat_interrupted([&] {
+      return ::pwrite(file.number(), content.data() + done, content.size() - done, static_cast<off_t>(done));
+    });
     if (count <= 0) throw failure(path);
     done += static_cast<std::size_t>(count);
   }
@@ -115,10 +108,7 @@ void OwnedFile::acquire() {
 }
 
 void OwnedFile::lock(const Descriptor& file) {
-  int result = -1;
-  do result = flock_(file.number(), LOCK_EX | LOCK_NB);
-  while (result != 0 && errno == EINTR);
-  if (result == 0) return;
+  if (repeat_interrupted([&] { return flock_(file.number(), LOCK_EX | LOCK_NB); }) == 0) return;
   if (errno != EWOULDBLOCK) {
     is_locked_ = false;
     return;
@@ -161,8 +151,8 @@ std::vector<std::byte> OwnedFile::content(std::size_t size) const {
   if (!exists() || !S_ISREG(status.st_mode) || static_cast<std::uintmax_t>(status.st_size) != size) return {};
   std::vector<std::byte> content(size);
   for (std::size_t done = 0; done < size;) {
-    const ssize_t count = ::pread(file_.number(), content.data() + done, size - done, static_cast<off_t>(done));
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = repeat_interrupted(
+        [&] { return ::pread(file_.number(), content.data() + done, size - done, static_cast<off_t>(done)); });
     if (count <= 0) return {};
     done += static_cast<std::size_t>(count);
   }

@@ -24,12 +24,16 @@ struct SocketAddress {
   std::filesystem::path path{};
 
   bool is_unix() const { return !path.empty(); }
-  /// "HOST:PORT" or "unix:PATH".
+  /// "HOST:PORT", "[IPV6]:PORT" or "unix:PATH".
   std::string text() const;
   bool operator==(const SocketAddress&) const = default;
 };
 
-inline constexpr std::string_view unix_scheme = "unix:";
+inline constexpr std::string_view unix_scheme = "unix:", this_computer = "127.0.0.1";
+
+/// Parses HOST:PORT, [IPV6]:PORT, PORT of this computer, or unix:PATH. All programs use this syntax.
+/// @throws BadSocketAddress.
+SocketAddress parse_socket_address(std::string_view text);
 
 /// Parses "unix:PATH". @throws BadSocketAddress if the system cannot use the path, or if the path contains a blank,
 /// which separates addresses in a line.

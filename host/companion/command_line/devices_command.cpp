@@ -9,6 +9,7 @@
 #include "host/client/command_line/help.hpp"
 #include "host/client/device/device.hpp"
 #include "host/client/device/transport.hpp"
+#include "host/client/local/output.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -41,7 +42,7 @@ Listed query_arm(const Endpoint& endpoint) {
     listed.serial_number = information.serial_number;  // USB/IP device lists do not contain it
     listed.board = information.board_name;
   } catch (const device::Error& error) {
-    fmt::print(stderr, "inkwell: The board name of arm {} cannot be read. {}\n", endpoint.serial_number, error.what());
+    local::print_error("inkwell: The board name of arm {} cannot be read. {}\n", endpoint.serial_number, error.what());
   }
   return listed;
 }

@@ -1,6 +1,5 @@
 #include "host/companion/command_line/commands.hpp"
 
-#include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 
 #include "host/client/command_line/help.hpp"
 #include "host/client/command_line/interrupt.hpp"
+#include "host/client/local/output.hpp"
 #include "protocol/faults.hpp"
 #include "protocol/reports.hpp"
 
@@ -51,7 +51,7 @@ int keep_on(const DeviceOptions& options, double seconds) {
   Pose pose = next_pose(device);
   print_force(options, pose);
   if (!options.json && seconds == 0) fmt::print("Ctrl-C switches the force off.\n");
-  std::fflush(stdout);
+  local::flush_output();
   const std::int64_t begin_periods = pose.time_periods;
   const auto is_over = [&] {
     return seconds > 0 && device::board_time_s(pose.time_periods - begin_periods) >= seconds;

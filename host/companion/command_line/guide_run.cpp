@@ -4,13 +4,14 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "host/client/command_line/interrupt.hpp"
 #include "host/client/guides/session_port.hpp"
+#include "host/client/local/interruption.hpp"
+#include "host/client/local/output.hpp"
 
 #include "host/companion/command_line/guided_device.hpp"
 #include "host/companion/command_line/store_commands.hpp"
@@ -31,7 +32,7 @@ std::optional<std::string> typed_line() {
   if (poll(&input, 1, 0) <= 0) return std::nullopt;
   std::string line;
   for (char c = 0;;) {
-    if (read(STDIN_FILENO, &c, 1) != 1)
+    if (local::repeat_interrupted([&] { return read(STDIN_FILENO, &c, 1); }) != 1)
       throw UsageError(
           "This step needs your consent, but standard input cannot be read. Add --yes to agree in advance.");
     if (c == '\n') return line;
@@ -48,21 +49,20 @@ class Display {
       shown_step_ = guide.step_index();
       shown_text_.clear();
       has_prompted_ = false;
-      fmt::print(stderr, "[{}/{}] {}\n", shown_step_ + 1, guide.step_count(), guide.step().title());
+      local::print_error("[{}/{}] {}\n", shown_step_ + 1, guide.step_count(), guide.step().title());
     }
     if (const std::string text = guide.step().text(); text != shown_text_) {
       end_line();
       shown_text_ = text;
-      fmt::print(stderr, "{}\n", text);
+      local::print_error("{}\n", text);
     }
     if (prompts && !has_prompted_ && guide.phase() == Phase::awaits_consent)
-      fmt::print(stderr, "Press Enter to agree, Ctrl+C to cancel.\n");
+      local::print_error("Press Enter to agree, Ctrl+C to cancel.\n");
     if (prompts) has_prompted_ = true;
     if (is_terminal_ && guide.phase() == Phase::working) live(guide);
-    std::fflush(stderr);
   }
   void end_line() {
-    if (line_is_open_) fmt::print(stderr, "\n");
+    if (line_is_open_) local::print_error("\n");
     line_is_open_ = false;
   }
 
@@ -75,7 +75,7 @@ class Display {
       line += fmt::format(
           "{}{} {}{}", line.empty() ? "" : "; ", check.name, guides::measured_text(check),
           check.expected.empty() ? "" : fmt::format(" ({}: {})", check.passed ? "ok" : "expected", check.expected));
-    fmt::print(stderr, "\r\x1b[K{:.160}", line);
+    local::print_error("\r\x1b[K{:.160}", line);
     line_is_open_ = true;
   }
 
@@ -98,7 +98,7 @@ class GuideRun {
         port_(device.session()) {}
 
   void run() {
-    fmt::print(stderr, "{}\n", guide_.title());
+    local::print_error("{}\n", guide_.title());
     while (!guide_.is_over()) {
       round();
       if (guide_.is_over()) break;
@@ -151,9 +151,8 @@ class GuideRun {
   bool wants_to_apply() {
     if (consent_.apply) return true;
     if (json_ || consent_.yes || isatty(STDIN_FILENO) != 1) return false;
-    for (const auto& proposal : guide_.findings().proposals) print(proposal, stderr);
-    fmt::print(stderr, "Apply these changes? Type yes: ");
-    std::fflush(stderr);
+    for (const auto& proposal : guide_.findings().proposals) local::print_error(text_of(proposal));
+    local::print_error("Apply these changes? Type yes: ");
     for (;;) {
       if (const auto line = typed_line()) return *line == "yes" || *line == "y";
       round();
@@ -162,9 +161,9 @@ class GuideRun {
   }
 
  public:
-  static void print(const guides::Proposal& proposal, std::FILE* file) {
-    fmt::print(file, "  {} = {} (now {}): {}\n", info(proposal.parameter).name, proposal.proposed, proposal.held,
-               proposal.reason);
+  static std::string text_of(const guides::Proposal& proposal) {
+    return fmt::format("  {} = {} (now {}): {}\n", info(proposal.parameter).name, proposal.proposed, proposal.held,
+                       proposal.reason);
   }
 
  private:
@@ -184,12 +183,11 @@ bool ask_to_store(const DeviceOptions& options, const Consent& consent, const In
   if (consent.store) return true;
   if (options.json || consent.yes || isatty(STDIN_FILENO) != 1) {
     if (!options.is_virtual)  // a virtual board exits before another command could reach it
-      fmt::print(stderr,
-                 "The changes are lost when the board loses power. Run `inkwell parameters store` to store them.\n");
+      local::print_error(
+          "The changes are lost when the board loses power. Run `inkwell parameters store` to store them.\n");
     return false;
   }
-  fmt::print(stderr, "Store the changes on the board, so that they survive power loss? Type yes: ");
-  std::fflush(stderr);
+  local::print_error("Store the changes on the board, so that they survive power loss? Type yes: ");
   for (;;) {
     if (const auto line = typed_line()) return *line == "yes" || *line == "y";
     if (interrupt.is_interrupted()) return false;
@@ -205,7 +203,7 @@ void print_result(const Guide& guide) {
     return;
   }
   fmt::print("{}\n", guide.applied() == guides::Applied::yes ? "Applied:" : "Proposed, not applied (add --apply):");
-  for (const auto& proposal : guide.findings().proposals) GuideRun::print(proposal, stdout);
+  for (const auto& proposal : guide.findings().proposals) fmt::print("{}", GuideRun::text_of(proposal));
 }
 
 }  // namespace
@@ -249,7 +247,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
   }
   for (auto& result : results) result["stored"] = is_stored;
   if (options.json) fmt::print("{}\n", (offers.size() == 1 ? results[0] : results).dump(2));
-  std::fflush(stdout);
+  local::flush_output();
   if (!failure.empty()) throw device::Error(failure);
   if (has_changed) print_unstored(options, is_stored);
   return 0;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/interruption.hpp"
+
 namespace inkwell::command_line {
 
 MarkKeys::MarkKeys(int descriptor) : descriptor_(descriptor) {
@@ -25,8 +27,8 @@ MarkKeys::~MarkKeys() {
 void MarkKeys::read_what_is_there() {
   pollfd waiting{descriptor_, POLLIN, 0};
   std::array<char, 256> chunk;
-  while (!is_at_end_ && poll(&waiting, 1, 0) == 1) {
-    const ssize_t length = read(descriptor_, chunk.data(), chunk.size());
+  while (!is_at_end_ && local::repeat_interrupted([&] { return poll(&waiting, 1, 0); }) == 1) {
+    const ssize_t length = local::repeat_interrupted([&] { return read(descriptor_, chunk.data(), chunk.size()); });
     if (length <= 0)
       is_at_end_ = true;
     else

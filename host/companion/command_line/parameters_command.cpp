@@ -11,6 +11,7 @@
 #include "host/client/command_line/help.hpp"
 #include "host/client/device/board_store.hpp"
 #include "host/client/device/parameter_file.hpp"
+#include "host/client/local/output.hpp"
 
 #include "host/companion/command_line/store_commands.hpp"
 
@@ -137,8 +138,8 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
     loaded = device::load_parameters(file);
   }
   for (const auto& name : loaded.unknown)
-    fmt::print(stderr, "inkwell: {} is not a parameter of this version and is ignored.{}\n", name,
-               device::parameter_suggestion(name));
+    local::print_error("inkwell: {} is not a parameter of this version and is ignored.{}\n", name,
+                       device::parameter_suggestion(name));
   if (loaded.changes.empty())
     throw device::Error(fmt::format("{} contains no parameter of this version. Nothing was sent.", file));
   if (!connection) connection = connect(options);

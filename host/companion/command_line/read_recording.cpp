@@ -4,11 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/output.hpp"
+
 namespace inkwell::command_line {
 
 recording::Recording read_recording(const std::string& file) {
   auto recording = recording::read(file);
-  for (const auto& remark : recording.remarks) fmt::print(stderr, "inkwell: {}\n", remark);
+  for (const auto& remark : recording.remarks) local::print_error("inkwell: {}\n", remark);
   return recording;
 }
 

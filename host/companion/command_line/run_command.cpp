@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -20,6 +19,9 @@
 
 #include "host/client/command_line/help.hpp"
 #include "host/client/installation/installed_paths.hpp"
+#include "host/client/local/ending_signals.hpp"
+#include "host/client/local/interruption.hpp"
+#include "host/client/local/output.hpp"
 
 #include "host/companion/command_line/program_libraries.hpp"
 
@@ -47,8 +49,8 @@ std::string environment(const char* name) {
 }
 
 void say_which_device(const device::Endpoint& endpoint, const std::string& address) {
-  fmt::print(stderr, "inkwell: the program uses the arm {} ({}){}.\n", endpoint.serial_number, address,
-             endpoint.is_virtual ? ", a simulation" : "");
+  local::print_error("inkwell: the program uses the arm {} ({}){}.\n", endpoint.serial_number, address,
+                     endpoint.is_virtual ? ", a simulation" : "");
 }
 
 /// Exit code of a program for which the dynamic linker has not found a library.
@@ -60,29 +62,26 @@ int wait_for_end(pid_t process, const std::filesystem::path& libraries) {
   constexpr auto first_checks = 40;
   int status = 0;
   for (int checks = 0;; ++checks) {
-    const pid_t ended = waitpid(process, &status, WNOHANG);
-    if (ended == process || (ended < 0 && errno != EINTR)) return status;
+    if (local::repeat_interrupted([&] { return waitpid(process, &status, WNOHANG); }) != 0) return status;
     if (const auto library = loaded_device_library(process, libraries)) {
       if (library->parent_path() != std::filesystem::canonical(libraries))
-        fmt::print(stderr,
-                   "inkwell: the program has loaded {}, not the library of this arm, so the program does not get the "
-                   "arm. A DT_RPATH of the program is searched before LD_LIBRARY_PATH. Remove it with `patchelf "
-                   "--remove-rpath`, or link the program with -Wl,--enable-new-dtags.\n",
-                   library->string());
+        local::print_error(
+            "inkwell: the program has loaded {}, not the library of this arm, so the program does not get the "
+            "arm. A DT_RPATH of the program is searched before LD_LIBRARY_PATH. Remove it with `patchelf "
+            "--remove-rpath`, or link the program with -Wl,--enable-new-dtags.\n",
+            library->string());
       break;
     }
     std::this_thread::sleep_for(checks < first_checks ? 50ms : 500ms);
   }
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
+  local::repeat_interrupted([&] { return waitpid(process, &status, 0); });
   return status;
 }
 
 void explain_missing_library(const std::string& program) {
   for (const auto& library : needed_libraries(program))
     if (is_vendor_driver(library))
-      fmt::print(
-          stderr,
+      local::print_error(
           "inkwell: {} needs {}, a library of the vendor's driver. Inkwell does not provide it, and its libHD.so "
           "does not need it. Link the program without this library, or remove the entry with `patchelf "
           "--remove-needed {}`.\n",
@@ -115,7 +114,8 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
   struct sigaction action {};
   action.sa_sigaction = pass_on;
   action.sa_flags = SA_SIGINFO | SA_RESTART;
-  for (const int signal : passed_on) sigaction(signal, &action, nullptr);
+  for (const int signal : passed_on)
+    if (!local::is_ignored_hang_up(signal)) sigaction(signal, &action, nullptr);
   pid_t process = 0;
   if (const int code = posix_spawnp(&process, arguments[0], nullptr, nullptr, arguments.data(), environ); code != 0)
     throw device::Error(fmt::format("{} cannot be started: {}. Check its name and whether it is executable.", words[0],

@@ -14,6 +14,7 @@
 #include "host/client/command_line/help.hpp"
 #include "host/client/device/board_store.hpp"
 #include "host/client/device/parameter_file.hpp"
+#include "host/client/local/output.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -128,13 +129,12 @@ int restore(const DeviceOptions& options) {
 }
 
 bool agrees() {
-  fmt::print(stderr,
-             "This erases all stored parameters, including the calibration of the arm. To save them to a file first, "
-             "use `inkwell parameters save FILE`.\n");
+  local::print_error(
+      "This erases all stored parameters, including the calibration of the arm. To save them to a file first, "
+      "use `inkwell parameters save FILE`.\n");
   if (isatty(STDIN_FILENO) != 1)
     throw UsageError("A factory reset needs your consent, but standard input is not a terminal. Add --yes to agree.");
-  fmt::print(stderr, "Type yes to continue: ");
-  std::fflush(stderr);
+  local::print_error("Type yes to continue: ");
   std::string line;
   std::getline(std::cin, line);
   return line == "yes" || line == "y";
@@ -153,16 +153,16 @@ int reset(const DeviceOptions& options, bool is_agreed) {
 void print_unstored(const DeviceOptions& options, bool is_stored) {
   if (!options.is_virtual || (is_stored && !options.flash.empty())) return;
   if (is_stored)
-    fmt::print(stderr, "inkwell: This virtual board exits now, and its flash is lost. Use --flash FILE to keep it.\n");
+    local::print_error("inkwell: This virtual board exits now, and its flash is lost. Use --flash FILE to keep it.\n");
   else if (options.flash.empty())
-    fmt::print(stderr,
-               "inkwell: This virtual board exits now, and these values are lost. Use --flash FILE and --store to keep "
-               "them.\n");
+    local::print_error(
+        "inkwell: This virtual board exits now, and these values are lost. Use --flash FILE and --store to keep "
+        "them.\n");
   else
-    fmt::print(stderr,
-               "inkwell: This virtual board exits now, and {} contains only stored values. Add --store to keep these "
-               "values.\n",
-               options.flash.string());
+    local::print_error(
+        "inkwell: This virtual board exits now, and {} contains only stored values. Add --store to keep these "
+        "values.\n",
+        options.flash.string());
 }
 
 void add_store_commands(CLI::App& parameters, const CommandContext& context) {

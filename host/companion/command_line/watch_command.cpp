@@ -1,6 +1,5 @@
 #include "host/companion/command_line/commands.hpp"
 
-#include <cstdio>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -11,6 +10,7 @@
 
 #include "host/client/command_line/help.hpp"
 #include "host/client/device/bus_clock.hpp"
+#include "host/client/local/output.hpp"
 #include "protocol/reports.hpp"
 
 #include "host/companion/command_line/next_pose.hpp"
@@ -116,7 +116,7 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
       fmt::print("{}\n", to_json(pose, *clock.host_time_s(pose.time_periods), lost).dump());
     else
       print_line(pose, lost);
-    std::fflush(stdout);
+    local::flush_output();
   }
 }
 

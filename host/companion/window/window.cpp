@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include "host/client/local/output.hpp"
+
 #include "host/companion/window/frame/display.hpp"
 #include "host/companion/window/frame/frame_loop.hpp"
 #include "host/companion/window/frame/imgui_frames.hpp"
@@ -37,7 +39,7 @@ WindowSettings settings_at_start(const WindowOptions& options) {
 void keep(const WindowSettings& settings) {
   const auto file = window_settings_path();
   if (file.empty()) return;
-  if (const std::string problem = write_settings(settings, file); !problem.empty()) fmt::print(stderr, "{}\n", problem);
+  if (const std::string problem = write_settings(settings, file); !problem.empty()) local::print_error("{}\n", problem);
 }
 
 /// Returns an error message; empty on success.
@@ -88,7 +90,7 @@ int run_window(const WindowOptions& options) {
     run(options);
     return 0;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    local::print_error("{}\n", error.what());
     return 1;
   }
 }

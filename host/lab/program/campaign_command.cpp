@@ -1,6 +1,5 @@
 #include "host/lab/program/commands.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <mutex>
 #include <vector>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/client/command_line/help.hpp"
+#include "host/client/local/output.hpp"
 #include "host/lab/campaign/cases.hpp"
 #include "host/lab/campaign/expected.hpp"
 #include "host/lab/campaign/page.hpp"
@@ -73,7 +73,7 @@ void print_result(const Case& the_case, const campaign::Result& result) {
              result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", text.empty() ? "-" : text, off,
                                                 result.peak_force_N, campaign::name_of(result.recovery))
                                   : result.error);
-  std::fflush(stdout);
+  local::flush_output();
 }
 
 /// Runs each case on a separate board. Returns exit code 1 if a case could not be run.

@@ -1,7 +1,6 @@
 #include "host/lab/program/commands.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,6 +13,7 @@
 
 #include "host/client/command_line/help.hpp"
 #include "host/client/command_line/interrupt.hpp"
+#include "host/client/local/output.hpp"
 #include "host/client/recording/write_text.hpp"
 #include "host/lab/program/parallel.hpp"
 #include "host/lab/soak/result.hpp"
@@ -84,7 +84,7 @@ Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
     if (options.json) return;
     const std::lock_guard lock(printing);
     fmt::print("{}", text);
-    std::fflush(stdout);
+    local::flush_output();
   };
   run_in_parallel(command.jobs, numbers.size(), [&](std::size_t i) {
     if (is_stopped()) return false;

@@ -2,13 +2,15 @@
 
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <utility>
 
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "host/client/local/ending_signals.hpp"
+#include "host/client/local/output.hpp"
 
 #include "host/companion/window/frame/picture_digest.hpp"
 #include "host/companion/window/frame/style.hpp"
@@ -25,7 +27,7 @@ volatile std::sig_atomic_t asked_to_end = 0;
 }  // namespace
 
 void end_loop_at_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+  static const local::EndingSignalsHandler handler([](int) { asked_to_end = 1; });
 }
 
 FrameLoop::FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content, FrameLoopOptions options)
@@ -57,7 +59,7 @@ void FrameLoop::run() {
   }
   if (!options_.frames_report) return;
   fmt::print("{}", frames_report_.text());
-  std::fflush(stdout);
+  local::flush_output();
 }
 
 FrameLoop::Frame FrameLoop::next_frame() {

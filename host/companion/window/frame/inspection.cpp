@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -12,6 +11,8 @@
 #include <poll.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
+
+#include "host/client/local/interruption.hpp"
 
 #include "host/companion/window/frame/display.hpp"
 
@@ -75,8 +76,8 @@ struct Inspection::Implementation {
       pollfd input{STDIN_FILENO, POLLIN, 0};
       if (poll(&input, 1, stop_is_seen_within_ms) <= 0) continue;
       std::array<char, 256> chunk;
-      const ssize_t length = ::read(STDIN_FILENO, chunk.data(), chunk.size());
-      if (length < 0 && errno == EINTR) continue;
+      const ssize_t length =
+          local::repeat_interrupted([&] { return ::read(STDIN_FILENO, chunk.data(), chunk.size()); });
       if (length <= 0) return;
       received.append(chunk.data(), static_cast<std::size_t>(length));
       for (std::size_t end; (end = received.find('\n')) != std::string::npos; received.erase(0, end + 1)) {

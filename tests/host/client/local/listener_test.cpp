@@ -12,6 +12,9 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "host/client/device/socket.hpp"
 #include "host/client/local/listener.hpp"
 #include "host/client/local/private_folder.hpp"
 #include "tests/failure.hpp"
@@ -154,4 +157,16 @@ TEST_CASE("a private folder lies in the user's runtime folder, or where there is
     const Environment runtime("XDG_RUNTIME_DIR", unsafe), temporary("TMPDIR", unsafe);
     CHECK(local::PrivateFolder::for_sockets().path().parent_path() == "/tmp");
   }
+}
+
+TEST_CASE("a program listens on the IPv6 address of this computer, and a client connects to the printed address") {
+  std::optional<Listener> listener;
+  try {
+    listener.emplace(SocketAddress{.host = "::1"}, "--test");
+  } catch (const std::runtime_error&) {
+    MESSAGE("skipped: this computer has no IPv6");
+    return;
+  }
+  CHECK(listener->address().text() == fmt::format("[::1]:{}", listener->address().port));
+  CHECK_NOTHROW(device::Socket(local::parse_socket_address(listener->address().text())));
 }
