@@ -10,6 +10,7 @@
 #include "boards/stm32f405/debugger/symbols.hpp"
 #include "boards/virtual/program/requests.hpp"
 #include "host/client/installation/installed_paths.hpp"
+#include "host/client/local/text_file.hpp"
 #include "protocol/image_identity.hpp"
 
 #include "boards/virtual/program/log.hpp"
@@ -286,7 +287,7 @@ bool take_over(Given& given) {
   try {
     std::ifstream script(given.injection_script);
     const std::string text{std::istreambuf_iterator<char>(script), {}};
-    for (Injection& injection : parse_injections(text, *given.options.board))
+    for (Injection& injection : parse_injections(local::without_byte_order_mark(text), *given.options.board))
       given.options.injections.push_back(std::move(injection));
   } catch (const InvalidInjection& error) {
     log_line("--inject-from " + given.injection_script + ", " + error.what());

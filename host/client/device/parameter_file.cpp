@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 
 #include "host/client/device/nearest_name.hpp"
+#include "host/client/local/replaced_file.hpp"
 #include "protocol/plain_text.hpp"
 
 namespace inkwell::device {
@@ -141,19 +142,12 @@ std::string format_parameters(const protocol::ParameterSet& parameters) {
 }
 
 void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters) {
-  std::filesystem::path unfinished = file;
-  unfinished += ".unfinished";
-  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
-  stream << format_parameters(parameters);
-  stream.close();
-  std::error_code code;
-  if (!stream) {
-    std::filesystem::remove(unfinished, code);
-    throw Error(fmt::format("The file {} cannot be written. Check the folder, your permission and the free space.",
-                            file.string()));
+  try {
+    local::replace_file(file, format_parameters(parameters));
+  } catch (const std::system_error& error) {
+    throw Error(fmt::format("The file {} cannot be written: {}. Check the folder, your permission and the free space.",
+                            file.string(), error.code().message()));
   }
-  std::filesystem::rename(unfinished, file, code);
-  if (code) throw Error(fmt::format("The file {} cannot be replaced: {}.", file.string(), code.message()));
 }
 
 std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device) {

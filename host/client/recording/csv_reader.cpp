@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/text_file.hpp"
+
 namespace inkwell::recording {
 namespace {
 
@@ -43,13 +45,16 @@ class CsvReader {
   }
 
   Recording read() {
-    std::string line;
-    while (std::getline(stream_, line)) {
+    std::string text;
+    while (std::getline(stream_, text)) {
       ++line_number_;
       // If the program was killed, the last line may be incomplete. An incomplete line is ignored.
       if (stream_.eof()) break;
+      std::string_view line = local::without_carriage_return(text);
+      if (line_number_ == 1) line = local::without_byte_order_mark(line);
+      if (line.empty()) continue;
       if (line.starts_with("# "))
-        comment(std::string_view(line).substr(2));
+        comment(line.substr(2));
       else if (!columns_known_)
         column_names(line);
       else

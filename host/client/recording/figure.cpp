@@ -5,10 +5,12 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "host/client/device/child_program.hpp"
+#include "host/client/local/replaced_file.hpp"
 #include "host/client/recording/gnuplot.hpp"
 #include "host/client/recording/write_text.hpp"
 
@@ -310,17 +312,14 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   write_text(work.path() / "figure.gnuplot",
              script(recording, options.over, figure_panes(quantities), data, from_s, to_s));
   run_gnuplot(work.path() / "figure.gnuplot");
-  // The picture is written to a temporary file first, so that a full disk does not destroy an older picture.
-  std::filesystem::path unfinished = picture;
-  unfinished += ".unfinished";
-  std::error_code error, ignored;
-  std::filesystem::copy_file(work.path() / "figure.png", unfinished, std::filesystem::copy_options::overwrite_existing,
-                             error);
-  if (!error) std::filesystem::rename(unfinished, picture, error);
-  if (!error) return;
-  std::filesystem::remove(unfinished, ignored);
-  throw device::Error(
-      fmt::format("{} cannot be written: {}. Give another location with --out.", picture.string(), error.message()));
+  try {
+    local::ReplacedFile next(picture);
+    std::filesystem::copy_file(work.path() / "figure.png", next.path());
+    next.replace();
+  } catch (const std::system_error& error) {
+    throw device::Error(fmt::format("{} cannot be written: {}. Give another location with --out.", picture.string(),
+                                    error.code().message()));
+  }
 }
 
 }  // namespace inkwell::recording

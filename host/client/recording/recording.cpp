@@ -4,10 +4,13 @@
 #include <array>
 #include <fstream>
 #include <new>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "host/client/device/wide_counter.hpp"
+#include "host/client/local/replaced_file.hpp"
+#include "host/client/local/text_file.hpp"
 #include "protocol/plain_text.hpp"
 
 #include "host/client/recording/formats.hpp"
@@ -133,7 +136,7 @@ Recording read_either(const std::filesystem::path& file) {
   stream.read(start.data(), start.size());
   constexpr std::array hdf5_signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   if (start == hdf5_signature) return read_hdf5(file);
-  if (start[0] == '#') {
+  if (local::without_byte_order_mark({start.data(), start.size()}).starts_with('#')) {
     stream.clear();  // clears the end-of-file state of a shorter file
     stream.seekg(0);
     return read_csv(stream, file.string());
@@ -184,9 +187,14 @@ Recording read(const std::filesystem::path& file) {
   return recording;
 }
 
+namespace {
+
+bool is_csv(const std::filesystem::path& file) { return local::has_extension(file, ".csv"); }
+
+}  // namespace
+
 void check_can_be_created(const std::filesystem::path& file, Existing existing) {
-  const auto ending = file.extension();
-  if (ending != ".h5" && ending != ".hdf5" && ending != ".csv")
+  if (!is_csv(file) && !local::has_extension(file, ".h5") && !local::has_extension(file, ".hdf5"))
     throw device::Error(fmt::format("{} must end in .h5 or .csv, which selects the format.", file.string()));
   if (existing == Existing::stays && std::filesystem::exists(file))
     throw device::Error(fmt::format("{} exists. Give the recording another name, or remove that file.", file.string()));
@@ -202,7 +210,7 @@ namespace {
 std::unique_ptr<Writer> create_new(const std::filesystem::path& file, const Information& information,
                                    const std::string& name) {
   try {
-    return file.extension() == ".csv" ? create_csv(file, information, name) : create_hdf5(file, information, name);
+    return is_csv(file) ? create_csv(file, information, name) : create_hdf5(file, information, name);
   } catch (const device::Error&) {
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
@@ -234,20 +242,14 @@ std::unique_ptr<Writer> create(const std::filesystem::path& file, const Informat
 
 void save(const Recording& recording, const std::filesystem::path& file) {
   check_can_be_created(file, Existing::is_replaced);
-  // The extension stays last, because it determines the format.
-  const auto part = file.parent_path() / fmt::format("{}.part{}", file.stem().string(), file.extension().string());
-  std::error_code error;
-  std::filesystem::remove(part, error);
+  local::ReplacedFile next(file);
+  write_all(*create_new(next.path(), recording.information, file.string()), recording);
   try {
-    write_all(*create_new(part, recording.information, file.string()), recording);
-  } catch (const device::Error&) {
-    std::filesystem::remove(part, error);
-    throw;
-  }
-  std::filesystem::rename(part, file, error);
-  if (error)
+    next.replace();
+  } catch (const std::system_error& error) {
     throw device::Error(
-        fmt::format("{} cannot be written: {}. Its content is in {}.", file.string(), error.message(), part.string()));
+        fmt::format("{} cannot be written: {}. Give another location.", file.string(), error.code().message()));
+  }
 }
 
 }  // namespace inkwell::recording

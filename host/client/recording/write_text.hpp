@@ -1,4 +1,4 @@
-// Writes a complete file in one call.
+// Writes or replaces a complete file in one call.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace inkwell::recording {
 
-/// Throws device::Error if the text cannot be written completely.
+/// Throws device::Error if the text cannot be written completely. Then an older file is unchanged.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace inkwell::recording

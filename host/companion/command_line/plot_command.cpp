@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/client/command_line/help.hpp"
+#include "host/client/local/text_file.hpp"
 #include "host/client/recording/figure.hpp"
 #include "host/client/recording/signals.hpp"
 #include "host/lab/experiment/figures.hpp"
@@ -42,7 +43,7 @@ std::vector<std::string> draw_as_in_paper(const recording::Recording& recording,
 }
 
 std::string draw(recording::Recording recording, const PlotOptions& options) {
-  if (!options.output.empty() && std::filesystem::path(options.output).extension() != ".png")
+  if (!options.output.empty() && !local::has_extension(options.output, ".png"))
     throw UsageError(
         fmt::format("{} does not end in .png. Figures are PNG files; give a name that ends in .png.", options.output));
   recording::FigureOptions figure{.quantities = {}, .from_s = options.from_s.value_or(0), .to_s = options.to_s};

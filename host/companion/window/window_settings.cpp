@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "host/client/local/replaced_file.hpp"
+
 namespace inkwell::window {
 
 namespace {
@@ -121,17 +123,15 @@ WindowSettings read_settings(const std::filesystem::path& file) {
 }
 
 std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file) {
-  // Writes a new file first, so that a full disk does not damage the old file.
-  const std::filesystem::path unfinished = file.string() + ".new";
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  std::ofstream stream(unfinished);
-  stream << format_settings(settings);
-  stream.close();
-  if (stream) std::filesystem::rename(unfinished, file, error);
-  if (stream && !error) return {};
-  std::filesystem::remove(unfinished, error);
-  return fmt::format("The window settings could not be written to {}. Check that the disk is not full.", file.string());
+  std::error_code ignored;
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  try {
+    local::replace_file(file, format_settings(settings));
+    return {};
+  } catch (const std::system_error& error) {
+    return fmt::format("The window settings could not be written to {}: {}. Check that the disk is not full.",
+                       file.string(), error.code().message());
+  }
 }
 
 std::string format_settings(const WindowSettings& settings) {

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "host/client/local/text_file.hpp"
+
 namespace inkwell::window {
 
 namespace fs = std::filesystem;
@@ -30,7 +32,8 @@ std::time_t to_time(fs::file_time_type time) {
 }
 
 bool has_ending(const fs::path& path, std::span<const std::string> endings) {
-  return endings.empty() || std::ranges::find(endings, path.extension().string()) != endings.end();
+  return endings.empty() ||
+         std::ranges::any_of(endings, [&](const std::string& ending) { return local::has_extension(path, ending); });
 }
 
 }  // namespace

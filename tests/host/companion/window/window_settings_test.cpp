@@ -33,6 +33,11 @@ TEST_CASE("settings come back as they were written") {
   CHECK(parse_settings(format_settings(settings)) == settings);
 }
 
+TEST_CASE("settings that a Windows editor has saved are read") {
+  const WindowSettings settings = parse_settings("\xEF\xBB\xBF[window]\r\ntheme = \"light\"\r\n\r\n");
+  CHECK(settings.theme == Theme::light);
+}
+
 TEST_CASE("a damaged file or an invalid value in the settings produces the defaults") {
   CHECK(parse_settings("[window\ntheme = ") == WindowSettings{});
   CHECK(parse_settings("") == WindowSettings{});

@@ -66,6 +66,7 @@ TEST_CASE("typed names are relative to the folder, absolute, or in the user's ho
     CHECK(typed_path("/some/folder", "~/soft.toml") == (fs::path(home) / "soft.toml").lexically_normal());
   CHECK(with_ending("soft", toml) == "soft.toml");
   CHECK(with_ending("soft.toml", toml) == "soft.toml");
+  CHECK(with_ending("SOFT.TOML", toml) == "SOFT.TOML");
   CHECK(with_ending("v1.2", toml) == "v1.2.toml");
 }
 
