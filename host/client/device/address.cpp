@@ -11,7 +11,7 @@ namespace inkwell::device {
 namespace {
 
 constexpr std::string_view usbip_scheme = "usbip:", board_scheme = "virtual:", own_board = "virtual",
-                           board_options = "virtual?", this_computer = "127.0.0.1";
+                           board_options = "virtual?";
 
 /// A server may list its arm late, because the firmware connects to USB only after 0.1 s of board time.
 constexpr auto start_patience = std::chrono::seconds(2);
@@ -68,29 +68,20 @@ Address parse_board_options(std::string_view options) {
 }  // namespace
 
 SocketAddress parse_socket(std::string_view text) {
-  if (text.starts_with(local::unix_scheme)) {
-    try {
-      return local::unix_socket(text);
-    } catch (const local::BadSocketAddress& error) {
-      throw BadAddress(error.what());
-    }
+  try {
+    return local::parse_socket_address(text);
+  } catch (const local::BadSocketAddress& error) {
+    throw BadAddress(error.what());
   }
-  const auto colon = text.rfind(':');
-  const bool names_host = colon != std::string_view::npos;
-  const std::string_view host = names_host && colon > 0 ? text.substr(0, colon) : this_computer;
-  const std::string_view digits = names_host ? text.substr(colon + 1) : text;
-  std::uint16_t port = 0;
-  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-  if (code != std::errc{} || end != digits.data() + digits.size() || port == 0)
-    throw BadAddress(fmt::format(
-        "`{}` is not the address of a server. Give HOST:PORT, for example 127.0.0.1:3240, or unix:PATH.", text));
-  return {.host = std::string(host), .port = port};
 }
 
-Address parse_server(std::string_view text) { return {.kind = Address::Kind::usbip, .server = parse_socket(text)}; }
+Address parse_server(std::string_view text) {
+  if (text.starts_with(usbip_scheme)) text.remove_prefix(usbip_scheme.size());
+  return {.kind = Address::Kind::usbip, .server = parse_socket(text)};
+}
 
 Address parse_address(std::string_view text) {
-  if (text.starts_with(usbip_scheme)) return parse_server(text.substr(usbip_scheme.size()));
+  if (text.starts_with(usbip_scheme)) return parse_server(text);
   if (text == own_board) return {.kind = Address::Kind::own_board};
   if (text.starts_with(board_options)) return parse_board_options(text.substr(board_options.size()));
   if (text.starts_with(board_scheme))

@@ -34,7 +34,7 @@ class SeveralArms : public NoDevice {
 ///
 ///     (nothing)          The only arm on USB.
 ///     `NUMBER`           An arm on USB, selected by serial number.
-///     `usbip:HOST:PORT`  An arm on a USB/IP server (TCP).
+///     `usbip:HOST:PORT`  An arm on a USB/IP server (TCP). An IPv6 address is in brackets: `usbip:[::1]:PORT`.
 ///     `usbip:unix:PATH`  An arm on a USB/IP server (Unix socket).
 ///     `virtual`          A new virtual board.
 ///     `virtual:FILE`     A new virtual board with the arm description FILE.
@@ -52,9 +52,9 @@ struct Address {
 
 /// Throws BadAddress.
 Address parse_address(std::string_view text);
-/// Parses HOST:PORT, PORT (on this computer) or unix:PATH. Throws BadAddress.
+/// Parses HOST:PORT, [IPV6]:PORT, PORT (on this computer) or unix:PATH. Throws BadAddress.
 SocketAddress parse_socket(std::string_view text);
-/// Returns the address of the arm on a USB/IP server. Throws BadAddress.
+/// Parses the address of a server, with or without `usbip:` in front. Throws BadAddress.
 Address parse_server(std::string_view text);
 /// Returns the address of an endpoint. The serial number is known only after the device was opened.
 std::string address_of(const Endpoint& endpoint);

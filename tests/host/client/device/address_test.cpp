@@ -51,6 +51,25 @@ TEST_CASE("an address is a serial number, a USB/IP server or a virtual board") {
   CHECK(parse_address("virtual:arms/mine.toml").arm == "arms/mine.toml");
 }
 
+TEST_CASE("the address that `inkwell run` prints is accepted as the address of a server") {
+  for (const auto text : {"127.0.0.1:3240", "usbip:127.0.0.1:3240", "usbip:3240"})
+    CHECK(device::parse_server(text).server.text() == "127.0.0.1:3240");
+  CHECK(device::parse_server("usbip:unix:/run/board").server.path == "/run/board");
+}
+
+TEST_CASE("an IPv6 address is in brackets") {
+  for (const auto& address : {parse_address("usbip:[::1]:3240"), device::parse_server("[::1]:3240")}) {
+    CHECK(address.server.host == "::1");
+    CHECK(address.server.port == 3240);
+    CHECK(address.server.text() == "[::1]:3240");
+  }
+  for (const auto wrong : {"::1:3240", "[::1]", "[::1]3240", "[]:3240", "[::1:3240", "::1]:3240"}) {
+    CAPTURE(wrong);
+    const auto message = message_of<device::BadAddress>([&] { device::parse_server(wrong); });
+    CHECK(contains(message, "[::1]:3240"));
+  }
+}
+
 TEST_CASE("a virtual board has options") {
   const auto board = parse_address("virtual?seed=18446744073709551615&arm=arms/my arm.toml&elf=a=b.elf");
   CHECK(board.kind == Address::Kind::own_board);
