@@ -236,6 +236,11 @@ TEST_CASE("a command switches the force on for as long as it runs, and any other
     CHECK(on.read_line() == "The force is off.");
     CHECK(on.wait() == 0);
   }
+  SUBCASE("a closed terminal") {
+    kill(on.process(), SIGHUP);
+    CHECK(on.read_line() == "The force is off.");
+    CHECK(on.wait() == 0);
+  }
   SUBCASE("another command") {
     const auto off = rig.run({"force", "off"});
     CHECK(off.exit_code == 0);

@@ -49,7 +49,7 @@ int run(int argc, char** argv) {
     if (options.profile) board.profile().write(*options.profile);
     return exit_code;
   } catch (const std::exception& error) {
-    log_line(error.what());
+    if (!local::is_output_lost()) log_line(error.what());  // main() reports lost output
     return 1;
   }
 }

@@ -1,7 +1,5 @@
 #include "host/lab/campaign/result.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
@@ -16,6 +14,7 @@
 
 #include "host/client/device/error.hpp"
 #include "host/client/device/plain_json.hpp"
+#include "host/client/local/text_file.hpp"
 #include "host/client/recording/write_text.hpp"
 
 /// Writes null for std::nullopt.
@@ -195,14 +194,7 @@ std::filesystem::path file_of(const std::filesystem::path& directory, unsigned n
 }
 
 void save(const Result& result, const std::filesystem::path& directory) {
-  const auto file = file_of(directory, result.number);
-  // Programs on several machines may write to the folder at the same time.
-  auto unfinished = file;
-  unfinished += fmt::format(".{}.part", ::getpid());
-  recording::write_text(unfinished, text_of(result));
-  std::error_code code;
-  std::filesystem::rename(unfinished, file, code);
-  if (code) throw device::Error(fmt::format("{} cannot be written: {}", file.string(), code.message()));
+  recording::write_text(file_of(directory, result.number), text_of(result));
 }
 
 std::vector<Result> load_all(const std::filesystem::path& directory) {
@@ -210,7 +202,8 @@ std::vector<Result> load_all(const std::filesystem::path& directory) {
   const auto cases = all_cases();
   std::vector<Result> results;
   for (const auto& entry : std::filesystem::directory_iterator(directory, code)) {
-    if (entry.path().extension() != ".json") continue;
+    // A second extension belongs to an unfinished file of another process.
+    if (!local::has_extension(entry.path(), ".json") || entry.path().stem().has_extension()) continue;
     std::ifstream file(entry.path());
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     try {

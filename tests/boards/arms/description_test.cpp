@@ -79,6 +79,13 @@ TEST_CASE("rows that no arm sets keep their defaults") {
   CHECK_FALSE(info(Parameter::speed_limit_m_per_s).belongs_to_arm);
 }
 
+TEST_CASE("an arm description that a Windows editor has saved is read") {
+  std::ifstream file(arms_directory / "omni.toml");
+  std::string text = "\xEF\xBB\xBF";
+  for (std::string line; std::getline(file, line);) text += line + "\r\n";
+  CHECK(arms::parse(text + "\r\n", "OMNI.TOML").name == "PHANTOM Omni");
+}
+
 TEST_CASE("a missing file is named") {
   CHECK_THROWS_AS(arms::read("/nowhere/arm.toml"), arms::DescriptionError);
   try {

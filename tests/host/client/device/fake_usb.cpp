@@ -67,6 +67,14 @@ int fail(int reason) {
   return -1;
 }
 
+/// Returns true if a signal interrupts the transfer.
+bool interrupt(FakeUsbDevice& device) {
+  if (device.interruptions == 0) return false;
+  --device.interruptions;
+  errno = EINTR;
+  return true;
+}
+
 enum class ReportKind : std::uint8_t { output = 0x90, feature = 0xB0 };
 
 /// Reads the lengths of all reports of this kind from the firmware's report descriptor (HID 1.11, section 6.2.2).
@@ -365,6 +373,7 @@ int hid_read_timeout(hid_device* hid, unsigned char* data, std::size_t length, i
   {
     const auto lock = lock_usb();
     FakeUsbDevice& device = *hid->device;
+    if (interrupt(device)) return -1;
     if (!device.reports.empty()) {
       const int given = give(device.reports.front(), data, length);
       if (!device.repeats_reports || device.reports.size() > 1) device.reports.pop_front();
@@ -381,6 +390,7 @@ int hid_write(hid_device* hid, const unsigned char* data, std::size_t length) {
   const Bytes report = on_the_bus(data, length, ReportKind::output);
   if (const auto board = board_of(hid)) return carry_out([&] { return board->write_report(report), report.size(); });
   const auto lock = lock_usb();
+  if (interrupt(*hid->device)) return -1;
   if (hid->device->unplugged) return fail(ENODEV);
   hid->device->written.push_back(report);
   return static_cast<int>(report.size());

@@ -37,6 +37,7 @@ struct FakeUsbDevice {
   bool hides = false;                        ///< hidapi does not list it
   std::map<std::uint8_t, Bytes> features{};  ///< reports by their id; others are stalled
   std::deque<Bytes> reports{};               ///< input reports that have not been read
+  int interruptions = 0;                     ///< number of transfers that a signal interrupts
   bool repeats_reports = false;              ///< the newest input report can be read repeatedly
   std::vector<Bytes> written{};              ///< output reports
   std::vector<libusb_transfer*> under_way{};

@@ -193,6 +193,20 @@ TEST_CASE("after an unplug, received data is still read, and then every call rai
   CHECK(usb.open_things == 0);
 }
 
+TEST_CASE("a signal during a transfer does not disconnect the arm") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  const auto transport = device::open_transport(arm.endpoint());
+  usb.send_report(arm, Bytes(5, std::byte{1}));
+  Bytes report(8);
+  arm.interruptions = 3;
+  CHECK(transport->read_report(report, 5s) == 5);
+  arm.interruptions = 3;
+  CHECK_NOTHROW(transport->write_report(bytes_of(protocol::ForceReport{})));
+  CHECK(arm.written.size() == 1);
+  CHECK(arm.interruptions == 0);
+}
+
 TEST_CASE("an arm that went away before its scope is claimed is disconnected") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");

@@ -113,6 +113,10 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   CHECK(loaded[1] == result);
   CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 2);  // no temporary file remains
 
+  std::ofstream(directory / "case-00001.4711.part.json") << "{";  // of a process that still writes
+  std::ofstream(directory / "copy.JSON") << "\xEF\xBB\xBF" << text_of(result) << "\r\n\r\n";
+  CHECK(load_all(directory.path()).size() == 3);
+
   std::ofstream(file_of(directory.path(), 9)) << "{\"number\": 9}";
   CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("case-00009.json: This file is not a result"),
                        device::Error);
