@@ -1,12 +1,15 @@
 #include "host/client/firmware_update/probe.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <optional>
+#include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "host/client/device/child_program.hpp"
 #include "protocol/plain_text.hpp"
@@ -109,8 +112,13 @@ std::string intel_hex(const Image& image) {
 
 namespace {
 
-std::vector<std::string> openocd_arguments(const std::string& interface, std::initializer_list<std::string> commands) {
-  std::vector<std::string> arguments{"-f", fmt::format("interface/{}.cfg", interface), "-f", "target/stm32f4x.cfg"};
+std::vector<std::string> openocd_arguments(const DebugProbe& probe, std::initializer_list<std::string> commands) {
+  std::vector<std::string> arguments{"-f", fmt::format("interface/{}.cfg", probe.interface), "-f",
+                                     "target/stm32f4x.cfg"};
+  if (!probe.serial_number.empty()) {
+    arguments.emplace_back("-c");
+    arguments.push_back(fmt::format("adapter serial {}", probe.serial_number));
+  }
   for (const auto& command : commands) {
     arguments.emplace_back("-c");
     arguments.push_back(command);
@@ -132,9 +140,9 @@ int run_openocd(const std::vector<std::string>& arguments, const std::filesystem
   return exit_code;
 }
 
-std::optional<protocol::ImageIdentity> read_installed(const std::string& interface, const std::filesystem::path& folder,
+std::optional<protocol::ImageIdentity> read_installed(const DebugProbe& probe, const std::filesystem::path& folder,
                                                       const std::function<void(const std::string&)>& on_line) {
-  if (run_openocd(openocd_arguments_for_reading(interface), folder, on_line) != 0) throw device::Error(cannot_read);
+  if (run_openocd(openocd_arguments_for_reading(probe), folder, on_line) != 0) throw device::Error(cannot_read);
   std::ifstream file(folder / installed_file, std::ios::binary);
   std::vector<std::byte> begin_of_flash(identity_end);
   if (!file.read(reinterpret_cast<char*>(begin_of_flash.data()), static_cast<std::streamsize>(begin_of_flash.size())))
@@ -142,30 +150,83 @@ std::optional<protocol::ImageIdentity> read_installed(const std::string& interfa
   return identity_in(begin_of_flash);
 }
 
+/// Returns the text of a file of one line, or an empty text.
+std::string line_in(const std::filesystem::path& file) {
+  std::string line;
+  std::ifstream stream(file);
+  std::getline(stream, line);
+  return line;
+}
+
+/// Only these characters can be part of a command of openocd.
+bool is_serial_number(std::string_view text) {
+  return std::ranges::all_of(
+      text, [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == ':'; });
+}
+
+/// openocd would use any of several probes, which may be connected to another board.
+void check_choice(const DebugProbe& probe) {
+  if (!is_serial_number(probe.serial_number))
+    throw device::Error(
+        fmt::format("`{}` is not the serial number of a debug probe. Give the letters and digits that are printed on "
+                    "the probe or listed by lsusb -v.",
+                    protocol::plain_text(probe.serial_number)));
+  const auto connected = serial_numbers_of_probes(probe);
+  const auto listed = fmt::format("{}", fmt::join(connected, ", "));
+  if (probe.serial_number.empty() && connected.size() > 1)
+    throw device::Error(
+        fmt::format("{} debug probes are connected: {}. Choose one with --probe-serial NUMBER. Nothing was changed.",
+                    connected.size(), listed));
+  if (!probe.serial_number.empty() && !connected.empty() &&
+      std::ranges::find(connected, probe.serial_number) == connected.end())
+    throw device::Error(fmt::format("No debug probe with the serial number {} is connected. Choose one of these: {}.",
+                                    probe.serial_number, listed));
+}
+
 }  // namespace
 
-std::vector<std::string> openocd_arguments_for_reading(const std::string& interface) {
+std::vector<std::string> serial_numbers_of_probes(const DebugProbe& probe) {
+  std::vector<std::string> serial_numbers;
+  std::error_code code;
+  for (std::filesystem::directory_iterator device(probe.usb_devices, code), end; !code && device != end;
+       device.increment(code)) {
+    const auto text = [&](const char* name) { return protocol::plain_text(line_in(device->path() / name)); };
+    const std::string product = text("product"), vendor = text("idVendor");
+    // The names and numbers that the manufacturers use for all models.
+    const bool is_probe = probe.interface.starts_with("stlink")
+                              ? vendor == "0483" && text("idProduct").starts_with("37")
+                          : probe.interface.starts_with("cmsis-dap") ? product.find("CMSIS-DAP") != std::string::npos
+                          : probe.interface == "jlink"               ? vendor == "1366"
+                                                                     : false;
+    if (is_probe) serial_numbers.push_back(text("serial"));
+  }
+  std::ranges::sort(serial_numbers);
+  return serial_numbers;
+}
+
+std::vector<std::string> openocd_arguments_for_reading(const DebugProbe& probe) {
   return openocd_arguments(
-      interface,
+      probe,
       {fmt::format("init; dump_image {} {:#x} {}", installed_file, protocol::image_begin, identity_end), "shutdown"});
 }
 
-std::vector<std::string> openocd_arguments_for_writing(const std::string& interface) {
+std::vector<std::string> openocd_arguments_for_writing(const DebugProbe& probe) {
   // FLASH_OPTCR: BOR_LEV 0 selects level 3; the other bits of the user byte are retained (RM0090, "Option bytes").
   const std::string set_brown_out =
       "set optcr [lindex [read_memory 0x40023c14 32 1] 0]; "
       "if {($optcr & 0x0c) != 0} { stm32f2x options_write 0 [expr {$optcr & 0xe0}] }";
-  return openocd_arguments(interface,
+  return openocd_arguments(probe,
                            {fmt::format("init; reset halt; flash write_image erase {0}; verify_image {0}", image_file),
                             fmt::format("echo {{{}}}", verified_line), set_brown_out, "reset run; shutdown"});
 }
 
-void update_by_probe(const Image& image, const std::string& interface, Consent consent,
+void update_by_probe(const Image& image, const DebugProbe& probe, Consent consent,
                      const std::function<void(const std::string&)>& on_line) {
-  if (!is_interface_name(interface)) throw device::Error(no_interface_name(interface));
+  if (!is_interface_name(probe.interface)) throw device::Error(no_interface_name(probe.interface));
+  check_choice(probe);
   const auto folder = device::make_private_folder();
   std::optional<protocol::ImageIdentity> installed;
-  if (consent != Consent::to_everything) installed = read_installed(interface, folder.path(), on_line);
+  if (consent != Consent::to_everything) installed = read_installed(probe, folder.path(), on_line);
   insist(image, installed, consent);
   write_image_file(image, folder.path() / image_file);
   bool is_verified = false;
@@ -173,8 +234,7 @@ void update_by_probe(const Image& image, const std::string& interface, Consent c
     is_verified |= line == verified_line;
     on_line(line);
   };
-  if (run_openocd(openocd_arguments_for_writing(interface), folder.path(), note_line) != 0)
-    throw device::Error(cannot_use);
+  if (run_openocd(openocd_arguments_for_writing(probe), folder.path(), note_line) != 0) throw device::Error(cannot_use);
   if (!is_verified) throw device::Error(not_verified);
 }
 

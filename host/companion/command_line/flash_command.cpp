@@ -15,6 +15,7 @@
 #include "host/client/firmware_update/probe.hpp"
 #include "host/client/firmware_update/update.hpp"
 #include "host/client/installation/installed_paths.hpp"
+#include "host/client/local/output.hpp"
 
 #include "host/companion/command_line/progress_bar.hpp"
 
@@ -30,7 +31,7 @@ struct FlashOptions {
   firmware_update::ImageFor image_for = firmware_update::always_the_given;
   bool by_usb = false, by_probe = false, says_yes = false, allows_downgrade = false;
   std::filesystem::path flash_file;
-  std::string interface = "stlink";
+  firmware_update::DebugProbe probe;
 
   firmware_update::Consent consent() const {
     using firmware_update::Consent;
@@ -88,7 +89,7 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
 int flash_file(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
   const auto [before, written, warning] =
       firmware_update::write_flash_file(given.flash_file, image, given.consent(), given.image_for);
-  if (!warning.empty()) fmt::print(stderr, "inkwell: {}\n", warning);
+  if (!warning.empty()) local::print_error("inkwell: {}\n", warning);
   if (options.json)
     fmt::print("{}\n", to_json(written, before).dump(2));
   else
@@ -101,8 +102,8 @@ int flash_file(const DeviceOptions& options, const FlashOptions& given, const Ne
 int write(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
   if (!given.flash_file.empty()) return flash_file(options, given, image);
   if (!given.by_probe) return flash_by_usb(options, given, image);
-  firmware_update::update_by_probe(image, given.interface, given.consent(),
-                                   [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  firmware_update::update_by_probe(image, given.probe, given.consent(),
+                                   [](const std::string& line) { local::print_error("{}\n", line); });
   fmt::print("{}\n", options.json ? to_json(image, std::nullopt).dump(2)
                                   : std::string("The firmware was written, verified and started."));
   return 0;
@@ -170,10 +171,17 @@ void add_flash_command(const CommandContext& context) {
         return firmware_update::is_interface_name(name) ? std::string() : firmware_update::no_interface_name(name);
       },
       "");
-  command->add_option("--interface", given->interface, "Debug probe for --swd: name of its openocd interface file")
+  command
+      ->add_option("--interface", given->probe.interface, "Debug probe for --swd: name of its openocd interface file")
       ->type_name("NAME")
       ->check(is_interface_name)
       ->capture_default_str()
+      ->needs(by_probe);
+  command
+      ->add_option("--probe-serial", given->probe.serial_number,
+                   "Use the debug probe with this serial number; required if several are connected")
+      ->type_name("NUMBER")
+      ->check(not_empty())
       ->needs(by_probe);
   command->add_flag("--allow-downgrade", given->allows_downgrade,
                     "Write the image even if it is older than the firmware on the board");

@@ -29,6 +29,14 @@ Image good_image() {
                     "it was never there.elf");
 }
 
+/// The probes of this computer have no influence.
+DebugProbe without_list(const std::string& interface) { return {.interface = interface, .usb_devices = "/nowhere"}; }
+
+void add_usb_device(const fs::path& folder, const std::map<std::string, std::string>& attributes) {
+  fs::create_directories(folder);
+  for (const auto& [name, text] : attributes) std::ofstream(folder / name) << text << '\n';
+}
+
 std::string content_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -118,7 +126,8 @@ class FakeOpenocd {
 const std::string reports_verified = "echo 'Info : flash'; echo '" + std::string(verified_line) + "' >&2";
 
 std::string failure(const std::string& interface = "stlink", Consent consent = Consent::none) {
-  return message_of<device::Error>([&] { update_by_probe(good_image(), interface, consent, [](const auto&) {}); });
+  return message_of<device::Error>(
+      [&] { update_by_probe(good_image(), without_list(interface), consent, [](const auto&) {}); });
 }
 
 }  // namespace
@@ -127,7 +136,7 @@ TEST_CASE("openocd runs in a private folder and gets the bytes that were checked
   const FakeOpenocd fake(reports_verified);
   std::vector<std::string> lines;
   const Image image = good_image();
-  update_by_probe(image, "cmsis-dap", {}, [&](const std::string& line) { lines.push_back(line); });
+  update_by_probe(image, without_list("cmsis-dap"), {}, [&](const std::string& line) { lines.push_back(line); });
   CHECK(lines == std::vector<std::string>{"Info : flash", verified_line});
   CHECK(fake.text("files") == ".:\nimage.hex\ninstalled.bin\n");
   CHECK(bytes_of_hex(fake.text("image")) == bytes_of(image));
@@ -185,10 +194,40 @@ TEST_CASE("the installed firmware is read without a halt") {
 TEST_CASE("control characters in the output of openocd are replaced by question marks") {
   const FakeOpenocd fake("printf 'serial \\033[2Jred\\r\\nlast'; " + reports_verified);
   std::vector<std::string> lines;
-  update_by_probe(good_image(), "stlink", {}, [&](const std::string& line) { lines.push_back(line); });
+  update_by_probe(good_image(), without_list("stlink"), {}, [&](const std::string& line) { lines.push_back(line); });
   REQUIRE(lines.size() >= 2);
   CHECK(lines[0] == "serial ?[2Jred");
   CHECK(lines[1] == "lastInfo : flash");
+}
+
+TEST_CASE("one of two debug probes must be chosen by its serial number") {
+  const FakeOpenocd fake(reports_verified);
+  const tests::TemporaryDirectory usb;
+  add_usb_device(usb / "1-1",
+                 {{"idVendor", "0483"}, {"idProduct", "374b"}, {"product", "STM32 STLink"}, {"serial", "0677FF"}});
+  add_usb_device(usb / "1-2",
+                 {{"idVendor", "0483"}, {"idProduct", "3748"}, {"product", "STM32 STLink"}, {"serial", "0011AA"}});
+  add_usb_device(usb / "1-3",
+                 {{"idVendor", "0483"}, {"idProduct", "5740"}, {"product", "Inkwell"}, {"serial", "3932"}});
+  add_usb_device(
+      usb / "1-4",
+      {{"idVendor", "2e8a"}, {"idProduct", "000c"}, {"product", "Debug Probe (CMSIS-DAP)"}, {"serial", "E66"}});
+  add_usb_device(usb / "1-4:1.0", {{"interface", "CMSIS-DAP v2"}});
+  const auto update = [&](const std::string& interface, const std::string& serial_number) {
+    update_by_probe(good_image(), {interface, serial_number, usb.path()}, {}, [](const auto&) {});
+  };
+  const auto refusal = [&](const std::string& serial_number) {
+    return message_of<device::Error>([&] { update("stlink", serial_number); });
+  };
+  CHECK(contains(refusal(""), "2 debug probes are connected: 0011AA, 0677FF. Choose one with --probe-serial"));
+  CHECK(contains(refusal("E66"), "0011AA, 0677FF"));
+  for (const char* wrong : {"0677FF; exit", "[exit]", "$x", "06 77"})
+    CHECK(contains(refusal(wrong), "is not the serial number"));
+  CHECK_FALSE(fs::exists(fake.noted("words")));
+  update("stlink", "0677FF");
+  CHECK(contains(fake.text("words"), "-f\ntarget/stm32f4x.cfg\n-c\nadapter serial 0677FF\n-c\ninit"));
+  CHECK_NOTHROW(update("cmsis-dap", ""));
+  CHECK_NOTHROW(update("ftdi", ""));
 }
 
 TEST_CASE("an interface is a name, not a path or a piece of a script") {
