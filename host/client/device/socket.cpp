@@ -19,12 +19,29 @@ namespace inkwell::device {
 
 namespace {
 
+/// Longest wait for a computer that does not answer.
+constexpr int connect_limit_ms = 3000;
+
+void limit_sends(int descriptor, int limit_ms) {
+  const timeval wait{limit_ms / 1000, limit_ms % 1000 * 1000};  // 0 means no limit; connect() uses this limit too
+  setsockopt(descriptor, SOL_SOCKET, SO_SNDTIMEO, &wait, sizeof wait);
+}
+
 /// If a signal interrupts connect(), this function waits for the connection.
 bool connect_socket(int descriptor, const addrinfo& address) {
-  if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return true;
+  limit_sends(descriptor, connect_limit_ms);
+  if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) {
+    limit_sends(descriptor, 0);
+    return true;
+  }
+  if (errno == EINPROGRESS) errno = ETIMEDOUT;
   if (errno != EINTR) return false;
+  limit_sends(descriptor, 0);
   pollfd connection{descriptor, POLLOUT, 0};
-  local::repeat_interrupted([&] { return poll(&connection, 1, -1); });
+  if (local::repeat_interrupted([&] { return poll(&connection, 1, connect_limit_ms); }) == 0) {
+    errno = ETIMEDOUT;
+    return false;
+  }
   int reason = 0;
   socklen_t size = sizeof reason;
   getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &reason, &size);
