@@ -48,12 +48,15 @@ std::vector<inkwell_device> list_devices() {
   for (const auto& endpoint : device::find_usb_devices())
     devices.push_back(entry(device::address_of(endpoint), endpoint));
   const std::string configured = environment_address();
-  const auto address = device::parse_address(configured);
-  if (address.kind == device::Address::Kind::usbip) devices.push_back(entry(configured, device::find_arm(address)));
-  if (address.kind == device::Address::Kind::own_board) {
-    device::Endpoint endpoint{};
-    endpoint.is_virtual = true;
-    devices.push_back(entry(configured, endpoint));
+  try {
+    const auto address = device::parse_address(configured);
+    if (address.kind == device::Address::Kind::usbip) devices.push_back(entry(configured, device::find_arm(address)));
+    if (address.kind == device::Address::Kind::own_board) {
+      device::Endpoint endpoint{};
+      endpoint.is_virtual = true;
+      devices.push_back(entry(configured, endpoint));
+    }
+  } catch (const device::Error&) {  // a stale address must not hide the arms on USB; inkwell_open() reports its cause
   }
   return devices;
 }

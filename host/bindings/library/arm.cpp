@@ -1,6 +1,7 @@
 #include "host/bindings/library/arm.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -37,15 +38,23 @@ void refuse_in_fault(const inkwell_pose& pose) {
   if (pose.state == INKWELL_FAULT) throw NotNow(device::fault_line(static_cast<protocol::Fault>(pose.fault)));
 }
 
+Clock::duration duration_of(double timeout_s) {
+  constexpr double longest_s = 1e6;
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(std::min(checked_timeout_s(timeout_s), longest_s)));
+}
+
 }  // namespace
 
-Arm::Arm(const std::string& address)
-    : connection_(address, poses_),
+Arm::Arm(const std::string& address, double timeout_s)
+    : connection_(address, poses_, duration_of(timeout_s)),
       force_(connection_.device(), poses_),
       scope_(connection_.device(), poses_),
       servo_(
           poses_, [this](const auto& force_N, std::uint32_t pose_sequence) { drive(force_N, pose_sequence); },
-          [this] { force_.let_go(); }) {}
+          [this] { force_.let_go(); }) {
+  inherit_priority(claim_mutex_);
+}
 
 Arm::~Arm() {
   servo_.request_end();
@@ -168,12 +177,33 @@ void Arm::claim() {
   if (!connection_.device().drives()) device().claim();
 }
 
+void Arm::release() {
+  if (servo_.is_running()) throw NotNow("A servo is running on this arm. Stop the servo, then release the arm.");
+  const std::lock_guard lock(claim_mutex_);
+  if (!connection_.device().drives()) return;
+  expecting_force_off([this] {
+    force_.let_go();
+    device().place_shapes({});
+    device().disable_force();
+  });
+  poses_.stop_using_force();
+  device().release();
+}
+
+void Arm::set_thread_priority(int priority) {
+  const int highest = sched_get_priority_max(SCHED_FIFO);
+  if (priority < 0 || priority > highest)
+    throw BadArgument(
+        fmt::format("{} is not a thread priority. Give 1 to {}, or 0 for a normal thread.", priority, highest));
+  connection_.set_thread_priority(priority);
+  force_.set_thread_priority(priority);
+  servo_.set_thread_priority(priority);
+}
+
 void Arm::take_over() {
   const std::lock_guard lock(claim_mutex_);
   device().take_over();
 }
-
-void Arm::set_force(const double (&force_N)[3]) { drive(force_N, pose().sequence); }
 
 void Arm::drive(const double (&force_N)[3], std::uint32_t pose_sequence) {
   poses_.require_poses();

@@ -27,7 +27,8 @@ namespace inkwell::library {
 
 class Arm {
  public:
-  explicit Arm(const std::string& address);
+  /// Throws TimedOut if no pose arrives within `timeout_s`.
+  Arm(const std::string& address, double timeout_s);
   /// Removes the force, and then waits until a running servo call has returned. The servo must not call this
   /// destructor.
   ~Arm();
@@ -39,6 +40,11 @@ class Arm {
   Servo& servo() { return servo_; }
   ScopeStream& scope() { return scope_; }
 
+  /// Functions for poses that neither throw nor allocate memory.
+  template <class Take, class Refuse>
+  inkwell_result read(Take take, Refuse refuse) const {
+    return poses_.read(take, refuse);
+  }
   /// The newest pose.
   PoseFeed::Seen last() const { return poses_.last(); }
   /// Passes the newest pose to `take`, then throws Disconnected if no poses arrive.
@@ -53,7 +59,12 @@ class Arm {
   /// Waits until this board time has passed. Throws TimedOut if no poses arrive.
   void sleep(double duration_s) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
+  control::Arm geometry() const { return connection_.geometry(); }
 
+  /// Makes this arm object the driver without a force. Throws InUse if another program or arm object drives the arm.
+  void claim();
+  /// Fades the force, removes the shapes and ends the claim. Throws NotNow if a servo is running.
+  void release();
   /// Makes this arm object the driver and switches the force on. Throws InUse with the name of the driver if another
   /// program or arm object drives the arm.
   void enable_force(double timeout_s);
@@ -64,7 +75,16 @@ class Arm {
   /// Throws FaultStays if the cause of the fault remains.
   void clear_fault();
   void set_force_mode(protocol::ForceMode mode) { force_.set_mode(mode); }
-  void set_force(const double (&force_N)[3]);
+  /// During a loss of poses or force, it returns `refuse(result, sentence)` without exceptions and memory allocation.
+  template <class Refuse>
+  inkwell_result set_force(const double (&force_N)[3], Refuse refuse) {
+    std::uint32_t pose_sequence = 0;
+    const inkwell_result result = poses_.check_force(pose_sequence, refuse);
+    if (result == INKWELL_OK) drive(force_N, pose_sequence);
+    return result;
+  }
+  /// Sets the scheduling priority of the threads that read poses, send forces and call the servo.
+  void set_thread_priority(int priority);
   void place_shapes(const device::Shapes& shapes);
   void start_servo(Servo::Function function);
 
@@ -96,7 +116,6 @@ class Arm {
       throw;
     }
   }
-  void claim();
   void drive(const double (&force_N)[3], std::uint32_t pose_sequence);
   void bid_farewell();
 

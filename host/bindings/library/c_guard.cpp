@@ -14,48 +14,49 @@ namespace {
 // A plain array remains valid when destructors call the library at program exit.
 thread_local char error_text[sentence_maximum];
 
-inkwell_result fail(inkwell_result result, const char* sentence) {
+}  // namespace
+
+inkwell_result refuse(inkwell_result result, const char* sentence) noexcept {
   copy_text(sentence, error_text);
   return result;
 }
-
-}  // namespace
 
 inkwell_result result_of_exception() noexcept {
   try {
     throw;
   } catch (const device::NoDevice& error) {
-    return fail(INKWELL_NO_DEVICE, error.what());
+    return refuse(INKWELL_NO_DEVICE, error.what());
   } catch (const BadArgument& error) {
-    return fail(INKWELL_BAD_ARGUMENT, error.what());
+    return refuse(INKWELL_BAD_ARGUMENT, error.what());
   } catch (const device::BadAddress& error) {
-    return fail(INKWELL_BAD_ARGUMENT, error.what());
+    return refuse(INKWELL_BAD_ARGUMENT, error.what());
   } catch (const TimedOut& error) {
-    return fail(INKWELL_TIMED_OUT, error.what());
+    return refuse(INKWELL_TIMED_OUT, error.what());
   } catch (const NotNow& error) {
-    return fail(INKWELL_REFUSED, error.what());
+    return refuse(INKWELL_REFUSED, error.what());
   } catch (const device::Refused& error) {
-    return fail(INKWELL_REFUSED, error.what());
+    return refuse(INKWELL_REFUSED, error.what());
   } catch (const device::NotStored& error) {
-    return fail(INKWELL_REFUSED, error.what());
+    return refuse(INKWELL_REFUSED, error.what());
   } catch (const device::FaultStays& error) {
-    return fail(INKWELL_REFUSED, error.what());
+    return refuse(INKWELL_REFUSED, error.what());
   } catch (const device::NotTested& error) {
-    return fail(INKWELL_REFUSED, error.what());
+    return refuse(INKWELL_REFUSED, error.what());
   } catch (const device::NoPermission& error) {
-    return fail(INKWELL_NO_PERMISSION, error.what());
+    return refuse(INKWELL_NO_PERMISSION, error.what());
   } catch (const device::Incompatible& error) {
-    return fail(INKWELL_INCOMPATIBLE, error.what());
+    return refuse(INKWELL_INCOMPATIBLE, error.what());
   } catch (const device::Disconnected& error) {
-    return fail(INKWELL_DISCONNECTED, error.what());
+    return refuse(INKWELL_DISCONNECTED, error.what());
   } catch (const ForceLost& error) {
-    return fail(INKWELL_FORCE_LOST, error.what());
+    return refuse(INKWELL_FORCE_LOST, error.what());
   } catch (const device::InUse& error) {
-    return fail(INKWELL_IN_USE, error.what());
+    return refuse(INKWELL_IN_USE, error.what());
   } catch (const std::exception& error) {
-    return fail(INKWELL_FAILED, error.what());
+    return refuse(INKWELL_FAILED, error.what());
   } catch (...) {
-    return fail(INKWELL_FAILED, "An unexpected internal error occurred. Report this with the version of the library.");
+    return refuse(INKWELL_FAILED,
+                  "An unexpected internal error occurred. Report this with the version of the library.");
   }
 }
 

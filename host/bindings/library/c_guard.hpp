@@ -5,6 +5,7 @@
 #include <cxxabi.h>
 
 #include <string>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@
 #include "host/bindings/library/seen_poses.hpp"
 
 struct inkwell_arm {
-  explicit inkwell_arm(const std::string& address) : arm(address) {}
+  inkwell_arm(const std::string& address, double timeout_s) : arm(address, timeout_s) {}
   inkwell::library::Arm arm;
   inkwell::library::SeenPoses seen;
   inkwell::process::Origin origin;
@@ -24,15 +25,23 @@ struct inkwell_arm {
 
 namespace inkwell::library {
 
+/// Stores the sentence for inkwell_error_text() and returns `result`. Does not allocate memory.
+inkwell_result refuse(inkwell_result result, const char* sentence) noexcept;
+
 /// Returns the result code for the current exception. Stores the exception's message for inkwell_error_text().
 inkwell_result result_of_exception() noexcept;
 
+/// `action` returns a result code or nothing.
 template <class Action>
 inkwell_result guarded(Action action) {
   const process::CancellationGuard guard;
   try {
-    action();
-    return INKWELL_OK;
+    if constexpr (std::is_same_v<std::invoke_result_t<Action>, inkwell_result>) {
+      return action();
+    } else {
+      action();
+      return INKWELL_OK;
+    }
   } catch (const abi::__forced_unwind&) {  // the thread was canceled
     throw;
   } catch (...) {

@@ -35,6 +35,8 @@ device::Surface surface_of(const inkwell_surface& surface) {
           static_cast<float>(surface.life_s)};
 }
 
+constexpr double open_timeout_s = 60;
+
 }  // namespace
 
 const char* inkwell_version(void) { return INKWELL_VERSION; }
@@ -65,7 +67,7 @@ inkwell_result inkwell_kind_of_address(const char* address, inkwell_address_kind
 inkwell_result inkwell_open(const char* address, inkwell_arm** arm) {
   return guarded([&] {
     const inkwell::process::NoCancellationPoints whole;
-    *required(arm, "The pointer to the arm") = new inkwell_arm(address == nullptr ? "" : address);
+    *required(arm, "The pointer to the arm") = new inkwell_arm(address == nullptr ? "" : address, open_timeout_s);
   });
 }
 
@@ -113,7 +115,7 @@ inkwell_result inkwell_get_board_name(inkwell_arm* arm, char name[INKWELL_BOARD_
 inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose) {
   return guarded([&] {
     required(pose, "The pointer to the pose");
-    arm_of(arm).read([&](const PoseFeed::Seen& last) { *pose = last.pose; });
+    return arm_of(arm).read([&](const PoseFeed::Seen& last) { *pose = last.pose; }, refuse);
   });
 }
 
@@ -134,7 +136,7 @@ inkwell_result inkwell_sleep(inkwell_arm* arm, double duration_s) {
 inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced) {
   return guarded([&] {
     required(is_referenced, "The pointer to the result");
-    arm_of(arm).read([&](const PoseFeed::Seen& last) { *is_referenced = last.is_referenced ? 1 : 0; });
+    return arm_of(arm).read([&](const PoseFeed::Seen& last) { *is_referenced = last.is_referenced ? 1 : 0; }, refuse);
   });
 }
 
@@ -217,8 +219,9 @@ inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_force_mode mode)
 inkwell_result inkwell_set_force(inkwell_arm* arm, const double force_N[3]) {
   return guarded([&] {
     required(force_N, "The force");
-    arm_of(arm).set_force({force_N[0], force_N[1], force_N[2]});
-    arm->seen.note_force();
+    const auto result = arm_of(arm).set_force({force_N[0], force_N[1], force_N[2]}, refuse);
+    if (result == INKWELL_OK) arm->seen.note_force();
+    return result;
   });
 }
 

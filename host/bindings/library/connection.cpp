@@ -16,8 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto first_pose_limit = 60s;
-constexpr auto read_timeout = 2ms;
+constexpr auto pose_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
 static_assert(Turns::patience.servo < silence_limit);
@@ -34,11 +33,14 @@ class CannotReturn : public Error {
 
 }  // namespace
 
-Connection::Connection(const std::string& address, PoseFeed& poses) : poses_(poses) {
+Connection::Connection(const std::string& address, PoseFeed& poses, Clock::duration timeout) : poses_(poses) {
+  inherit_priority(geometry_mutex_);
   std::promise<void> opened;
   auto is_open = opened.get_future();
   thread_ = std::thread([this, address, promise = std::move(opened)]() mutable { run(address, std::move(promise)); });
   try {
+    if (is_open.wait_for(timeout) == std::future_status::timeout)
+      throw TimedOut("The device sends no poses. Reset the board, or let a paused virtual board run.");
     is_open.get();
   } catch (...) {
     end();
@@ -106,27 +108,24 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
 }
 
 void Connection::read_poses(const OnPose& on_pose) {
-  const auto deadline = Clock::now() + first_pose_limit;
   PoseReader reader;  // the board may have restarted
   Clock::duration silence{};
   auto before = Clock::now();
   bool drove = false, has_lost_claim = false;
   while (!ends() && poses_.begin_turn()) {
     arm_.device->keep_alive();
-    const auto newest = reader.read_newest(*arm_.device, read_timeout, geometry());
+    const auto newest = reader.read_newest(*arm_.device, pose_timeout, geometry());
     const auto now = Clock::now();
     silence = newest ? Clock::duration() : silence + std::min<Clock::duration>(now - before, longest_wait);
     before = now;
     if (std::exchange(drove, arm_.device->drives()) && !drove) has_lost_claim = true;
     if (has_lost_claim) has_lost_claim = !drove && !report_lost_claim();
     if (newest) {
-      poses_.publish(newest->pose, newest->is_referenced);
+      poses_.publish(newest->pose, newest->is_referenced, newest->motion);
       on_pose(*newest);
     } else if (is_open_ && silence > silence_limit && poses_.loss() == Loss::none) {
       poses_.lose(Loss::silence, silent);
     }
-    if (!is_open_ && now > deadline)
-      throw TimedOut("The device sends no poses. Reset the board, or let a paused virtual board run.");
   }
 }
 

@@ -20,8 +20,8 @@ namespace inkwell::library {
 class Connection {
  public:
   /// Returns once poses arrive. If the arm has started a virtual board, the constructor also waits for referenced
-  /// encoders. Throws Error.
-  Connection(const std::string& address, PoseFeed& poses);
+  /// encoders. Throws TimedOut after `timeout`, and Error.
+  Connection(const std::string& address, PoseFeed& poses, Clock::duration timeout);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -36,6 +36,9 @@ class Connection {
     const std::lock_guard lock(control_mutex_);
     action(own_board());
   }
+
+  /// Sets the scheduling priority of the thread that reads poses, as in set_priority().
+  void set_thread_priority(int priority) { set_priority(thread_, priority); }
 
   control::Arm geometry() const;
   void set_geometry(const protocol::ParameterSet& parameters);

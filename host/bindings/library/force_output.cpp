@@ -15,6 +15,7 @@ constexpr auto attention = std::chrono::milliseconds(20);
 }  // namespace
 
 ForceOutput::ForceOutput(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
+  inherit_priority(mutex_);
   if (poses_.is_in_lock_step())
     poses_.add(*this);
   else

@@ -30,6 +30,8 @@ class ForceOutput : private TurnPart {
   void send(const double (&force_N)[3], std::uint32_t pose_sequence);
   /// Fades the force out.
   void let_go();
+  /// Sets the scheduling priority of the sending thread, as in set_priority().
+  void set_thread_priority(int priority) { set_priority(thread_, priority); }
   /// No force is sent after this function returns.
   void stop();
 

@@ -71,10 +71,10 @@ void PoseFeed::leave_turns() {
   if (turn_) turn_->leave();
 }
 
-void PoseFeed::publish(const inkwell_pose& pose, bool is_referenced) {
+void PoseFeed::publish(const inkwell_pose& pose, bool is_referenced, const Motion& motion) {
   {
     const std::lock_guard lock(mutex_);
-    note(pose, is_referenced);
+    note(pose, is_referenced, motion);
     if (!turn_) return release(Waiting::all);
   }
   is_requested_ = false;
@@ -95,7 +95,7 @@ void PoseFeed::publish(const inkwell_pose& pose, bool is_referenced) {
   turn_->end();
 }
 
-void PoseFeed::note(const inkwell_pose& pose, bool is_referenced) {
+void PoseFeed::note(const inkwell_pose& pose, bool is_referenced, const Motion& motion) {
   const bool is_on = pose.state == INKWELL_ACTIVE;
   const bool is_first = loss_ == Loss::link;  // first pose of a new link: a difference from the old link is not a
                                               // change
@@ -106,7 +106,7 @@ void PoseFeed::note(const inkwell_pose& pose, bool is_referenced) {
   if (!is_on) expects_force_off_ = false;
   had_force_ = had_force_ || (is_on && uses_force_);
   loss_ = Loss::none;
-  seen_ = {pose, is_referenced};
+  seen_ = {pose, is_referenced, motion};
   ++poses_;
 }
 
@@ -234,6 +234,12 @@ void PoseFeed::wake() const {
 void PoseFeed::use_force() {
   const std::lock_guard lock(mutex_);
   uses_force_ = true;
+}
+
+void PoseFeed::stop_using_force() {
+  const std::lock_guard lock(mutex_);
+  uses_force_ = false;
+  force_lost_.reset();
 }
 
 void PoseFeed::forget_lost_force() {

@@ -18,6 +18,8 @@
 #include "host/client/device/transport.hpp"
 #include "host/client/process/cancellation.hpp"
 
+#include "host/bindings/library/motion.hpp"
+#include "host/bindings/library/priority.hpp"
 #include "host/bindings/library/turns.hpp"
 
 namespace inkwell::library {
@@ -51,6 +53,8 @@ class TurnPart {
 
 class PoseFeed final : public device::LockStep {
  public:
+  PoseFeed() { inherit_priority(mutex_); }
+
   // ---- pose thread ---------------------------------------------------------------------------------------------
 
   /// Switches to lock step with these turns.
@@ -66,7 +70,7 @@ class PoseFeed final : public device::LockStep {
 
   /// Publishes a pose and ends a loss of poses. In lock step, the function waits for the servos' answers and then
   /// notifies waiting calls.
-  void publish(const inkwell_pose& pose, bool is_referenced);
+  void publish(const inkwell_pose& pose, bool is_referenced, const Motion& motion = {});
   /// Reports a loss. `cause` is a sentence with the remedy. The newest cause replaces the previous cause.
   void lose(Loss kind, const std::string& cause);
   /// Reports the loss of this program's claim.
@@ -77,6 +81,7 @@ class PoseFeed final : public device::LockStep {
   struct Seen {
     inkwell_pose pose{};
     bool is_referenced = false;  ///< whether the encoders are referenced
+    Motion motion{};
   };
   /// Returns the newest known pose.
   Seen last() const;
@@ -87,6 +92,13 @@ class PoseFeed final : public device::LockStep {
     const std::unique_lock lock(mutex_);
     take(seen_);
     require_poses(lock);
+  }
+  /// Does the same without exceptions and memory allocation. During a loss, it returns `refuse(result, sentence)`.
+  template <class Take, class Refuse>
+  inkwell_result read(Take take, Refuse refuse) const {
+    const std::lock_guard lock(mutex_);
+    take(seen_);
+    return loss_ == Loss::none ? INKWELL_OK : refuse(INKWELL_DISCONNECTED, cause_.c_str());
   }
   /// Throws Disconnected during a loss.
   void require_poses() const;
@@ -100,10 +112,11 @@ class PoseFeed final : public device::LockStep {
   inkwell_pose wait(Condition condition, double timeout_s = forever_s,
                     Turns::Answer answer = Turns::Answer::none) const {
     bool is_lost = false;  // the link may be restored before this thread runs
-    const std::function<bool()> is_over = [&] {
+    const auto check = [&] {
       is_lost = loss_ == Loss::link;
       return is_lost || condition(seen_.pose, loss_);
     };
+    const std::function<bool()> is_over = std::ref(check);  // a reference needs no memory allocation
     std::unique_lock lock(mutex_);
     const inkwell_pose pose = wait(lock, is_over, timeout_s, answer);
     if (is_lost) throw_loss(lock);
@@ -116,6 +129,8 @@ class PoseFeed final : public device::LockStep {
 
   /// After this call, the library reports lost forces to this program.
   void use_force();
+  /// Called when this program releases the arm. Until use_force() is called, lost forces are not reported.
+  void stop_using_force();
   /// Called when this program switches the force on, or accepts that the force is off.
   void forget_lost_force();
   /// Called when this program switches the force off.
@@ -123,6 +138,16 @@ class PoseFeed final : public device::LockStep {
   /// Throws ForceLost after an unexpected loss of the force. The loss counts until the force is on, or until
   /// forget_lost_force() is called.
   void require_force() const;
+  /// Returns `refuse(result, sentence)` during a loss of poses or force, without exceptions and memory allocation.
+  /// Otherwise writes the sequence number of the newest pose.
+  template <class Refuse>
+  inkwell_result check_force(std::uint32_t& pose_sequence, Refuse refuse) const {
+    const std::lock_guard lock(mutex_);
+    if (loss_ != Loss::none) return refuse(INKWELL_DISCONNECTED, cause_.c_str());
+    if (force_lost_) return refuse(INKWELL_FORCE_LOST, force_lost_->c_str());
+    pose_sequence = seen_.pose.sequence;
+    return INKWELL_OK;
+  }
   bool uses_force() const;
   /// Returns true if the force was on since the link was opened.
   bool had_force() const;
@@ -133,7 +158,8 @@ class PoseFeed final : public device::LockStep {
   /// differs from `known`. Only for servos. In lock step, board time stops from the return to the servo's next wait.
   template <class Condition>
   inkwell_pose wait_uninterrupted(std::uint64_t known, Condition condition) const {
-    const std::function<bool()> is_over = [&] { return interruptions_ != known || condition(seen_.pose); };
+    const auto check = [&] { return interruptions_ != known || condition(seen_.pose); };
+    const std::function<bool()> is_over = std::ref(check);
     std::unique_lock lock(mutex_);
     const inkwell_pose pose = wait(lock, is_over, forever_s, Turns::Answer::servo);
     if (interruptions_ != known) std::rethrow_exception(interruption_);
@@ -183,7 +209,7 @@ class PoseFeed final : public device::LockStep {
   void end_waiting(const Waiter& waiter) const;
   enum class Waiting : std::uint8_t { servos, others, all };
   void release(Waiting which) const;
-  void note(const inkwell_pose& pose, bool is_referenced);
+  void note(const inkwell_pose& pose, bool is_referenced, const Motion& motion);
   void note_loss(Loss kind, const std::string& cause);
 
   [[noreturn]] void throw_loss(const std::unique_lock<std::mutex>& lock) const;

@@ -39,6 +39,7 @@ inkwell_pose PoseReader::read(const device::Pose& report, const control::Arm& ge
   const glm::mat3 rotation = kinematics::stylus_rotation(joint_rad, gimbal_rad, geometry);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] = rotation[column][row];
+  motion_ = motion_fit_.next(report, pose.time_s, rotation, geometry);
   pose.force_sources = report.force_sources;
   pose.button_1 = is_closed(report.switches, protocol::Switch::button_1);
   pose.button_2 = is_closed(report.switches, protocol::Switch::button_2);
@@ -51,7 +52,7 @@ std::optional<ReadPose> PoseReader::read_newest(device::Device& device, std::chr
                                                 const control::Arm& geometry) {
   std::optional<ReadPose> newest;
   while (const auto report = device.read_pose(newest ? std::chrono::milliseconds(0) : timeout))
-    newest = ReadPose{read(*report, geometry), report->is_referenced != 0};
+    newest = ReadPose{read(*report, geometry), report->is_referenced != 0, motion_};
   return newest;
 }
 

@@ -9,17 +9,22 @@
 #include "host/client/device/device.hpp"
 #include "host/client/kinematics/velocity.hpp"
 
+#include "host/bindings/library/motion.hpp"
+
 namespace inkwell::library {
 
 struct ReadPose {
   inkwell_pose pose;
   bool is_referenced;
+  Motion motion{};
 };
 
 /// Use one object for each arm, in a single thread.
 class PoseReader {
  public:
   inkwell_pose read(const device::Pose& report, const control::Arm& geometry);
+  /// Returns the motion at the last pose.
+  const Motion& motion() const { return motion_; }
   /// Returns the newest pose that the device has sent, and waits if no pose has arrived. Returns none on time-out.
   /// Older poses are skipped, because a servo would answer them too late.
   std::optional<ReadPose> read_newest(device::Device& device, std::chrono::milliseconds timeout,
@@ -27,6 +32,8 @@ class PoseReader {
 
  private:
   kinematics::VelocityFit velocity_;
+  MotionFit motion_fit_;
+  Motion motion_;
 };
 
 }  // namespace inkwell::library

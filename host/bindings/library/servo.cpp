@@ -11,6 +11,7 @@ namespace inkwell::library {
 
 Servo::Servo(const PoseFeed& poses, Output output, std::function<void()> let_go)
     : poses_(poses), output_(std::move(output)), let_go_(std::move(let_go)) {
+  inherit_priority(mutex_);
   thread_ = std::thread([this] { run(); });
 }
 

@@ -38,6 +38,8 @@ class Servo {
   /// Throws the error that stopped the last servo: lost poses, lost force, or another driver. Does not throw if the
   /// program or the servo function stopped the servo.
   void throw_what_ended_it() const;
+  /// Sets the scheduling priority of the servo's thread, as in set_priority().
+  void set_thread_priority(int priority) { set_priority(thread_, priority); }
   bool is_caller() const { return std::this_thread::get_id() == thread_.get_id(); }
 
  private:

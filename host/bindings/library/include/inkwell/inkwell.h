@@ -60,11 +60,18 @@ typedef enum inkwell_result INKWELL_AS_INT {
  *   - a board that has restarted has its stored parameters.
  * A virtual board that inkwell_open() has started does not return after it has exited. */
 
-/* Version of the library, for example "0.2.0". */
+/* Version of this header. A program can compare it: #if INKWELL_VERSION_NUMBER >= 200 means 0.2.0 or newer. */
+#define INKWELL_VERSION_MAJOR 0
+#define INKWELL_VERSION_MINOR 2
+#define INKWELL_VERSION_PATCH 0
+#define INKWELL_VERSION_NUMBER \
+  (INKWELL_VERSION_MAJOR * 10000 + INKWELL_VERSION_MINOR * 100 + INKWELL_VERSION_PATCH)
+
+/* Version of the loaded library, for example "0.2.0". */
 INKWELL_API const char* inkwell_version(void);
 
-/* The last error in the calling thread and its remedy as a sentence; empty if there was no error. The text is valid
- * until the thread's next call. */
+/* The last error in the calling thread and its remedy as a sentence; empty if there was no error. A successful call
+ * leaves the text unchanged, as with errno. The next error of the thread overwrites it. */
 INKWELL_API const char* inkwell_error_text(void);
 
 /* ---- devices ------------------------------------------------------------------------------------------------ */
@@ -77,9 +84,15 @@ typedef struct inkwell_device {
   int is_virtual; /* 1 for a simulation */
 } inkwell_device;
 
-/* Lists the arms on this computer's USB, and the virtual board if INKWELL_DEVICE names one. Writes at most `capacity`
- * arms, and their total number to `count`. */
+/* Lists the arms on this computer's USB, and the virtual board if INKWELL_DEVICE names one that answers. Writes at most
+ * `capacity` arms, and their total number to `count`. */
 INKWELL_API inkwell_result inkwell_list_devices(inkwell_device* devices, size_t capacity, size_t* count);
+
+/* Waits until an arm is plugged in or removed. `devices` and `count` contain the known list, from this function or from
+ * inkwell_list_devices(); at first `count` may be 0. Writes the new list as inkwell_list_devices() does. If the list
+ * does not change within `timeout_s` of the host's clock, it returns INKWELL_TIMED_OUT. */
+INKWELL_API inkwell_result inkwell_wait_for_devices(double timeout_s, inkwell_device* devices, size_t capacity,
+                                                    size_t* count);
 
 /* An open arm. */
 typedef struct inkwell_arm inkwell_arm;
@@ -101,8 +114,13 @@ INKWELL_API inkwell_result inkwell_kind_of_address(const char* address, inkwell_
  *                      Unix socket
  *   "virtual"          a new virtual board, which is ready and exits with inkwell_close(); "virtual:FILE" with
  *                      the arm description FILE
- * The force is off. */
+ * The force is off. The function returns after the first pose. It waits up to 60 s for this pose, and then returns
+ * INKWELL_TIMED_OUT. */
 INKWELL_API inkwell_result inkwell_open(const char* address, inkwell_arm** arm);
+
+/* Does the same as inkwell_open(), but waits at most `timeout_s` of the host's clock. A computer that does not answer can
+ * delay the result by a further 10 s. */
+INKWELL_API inkwell_result inkwell_open_with_timeout(const char* address, double timeout_s, inkwell_arm** arm);
 
 /* Fades this program's force, stops the servo and closes the arm. NULL is allowed. The function waits until a running
  * call of the servo returns, without a time limit; the servo's force has faded by then. In the servo itself the
@@ -215,7 +233,7 @@ typedef struct inkwell_pose {
   double velocity_m_s[3]; /* mean over the last 8 ms */
   double rotation[9];     /* of the stylus, row by row; columns are its x, y and z axes; z points away from its tip */
   double gimbal_rad[3];   /* yaw, pitch, roll */
-  double joint_rad[3];
+  double joint_rad[3];    /* see inkwell_forward_kinematics() */
   double force_N[3];      /* total force that the board requests from the motors */
   uint32_t force_sources; /* bits of inkwell_force_source */
   int button_1, button_2; /* 1 while pressed */
@@ -242,9 +260,54 @@ INKWELL_API inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_refer
 
 /* Computes the probe's position and Jacobian for these joint angles. `jacobian` is in m/rad and in row-major order. The
  * Jacobian times the joint speeds is the probe's velocity. The transposed Jacobian times a force is the joint torques.
- * Either output may be NULL. */
+ * Either output may be NULL.
+ *
+ * On the Omni, joint 1 turns both links about the vertical axis. At 0 they point to the user, and it is positive to the
+ * left. Joint 2 is the elevation of link 2. At 0 link 2 is horizontal, and it is positive upward. Joint 3 is the
+ * direction of link 3, measured from the base. At 0 link 3 points straight down, and it is positive toward the user and
+ * upward. The angle of link 3 relative to link 2 is therefore joint 3 minus joint 2. */
 INKWELL_API inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
                                                       double jacobian[9]);
+
+/* Pose of one bus frame with its validity, speeds and times. A later library may append members. */
+typedef struct inkwell_arm_state {
+  inkwell_pose pose;
+  int is_referenced;             /* 1: position, joints and rotation of `pose` are valid; see inkwell_is_referenced() */
+  int64_t received_ns;           /* host time of the pose's arrival, ns since 1970 (CLOCK_REALTIME) */
+  int64_t received_monotonic_ns; /* the same in CLOCK_MONOTONIC, which clock changes do not affect */
+  double quaternion[4];          /* rotation of the stylus as x, y, z, w, with w >= 0 */
+  double angular_velocity_rad_per_s[3]; /* of the stylus, in workspace axes; mean over the last 8 ms */
+  double joint_speed_rad_per_s[3];      /* mean over the last 8 ms */
+  double joint_torque_Nm[3];            /* that force_N of the pose requires */
+} inkwell_arm_state;
+
+/* Returns the newest state without waiting. `size` is sizeof(inkwell_arm_state), so that later libraries can append
+ * members. With INKWELL_DISCONNECTED `state` is the last known state. While no poses arrive, this function,
+ * inkwell_get_pose() and inkwell_set_force() allocate no memory. */
+INKWELL_API inkwell_result inkwell_get_state(inkwell_arm* arm, inkwell_arm_state* state, size_t size);
+
+/* Capabilities of an arm, from its parameters. A later library may append members. */
+typedef struct inkwell_abilities {
+  double workspace_minimum_m[3], workspace_maximum_m[3]; /* box of the arm */
+  double workspace_radius_m;                             /* of the largest sphere in the box */
+  double reach_minimum_m[3], reach_maximum_m[3];         /* range of the probe within the joint stops */
+  double joint_minimum_rad[3], joint_maximum_rad[3];     /* joint stops; the third is that of link 3 relative to link 2 */
+  int third_joint_is_absolute;                           /* 1: joint 3 is measured from the base, as on the Omni */
+  double force_N;                                        /* largest force, force_limit_N */
+  double continuous_force_N;                             /* every motor tolerates it continuously, in every pose */
+  double joint_torque_Nm[3];                             /* at the current limits of the motors */
+  double continuous_joint_torque_Nm[3];
+  double stiffness_N_per_m, damping_Ns_per_m; /* recommended maxima for forces of a program at 1000 Hz */
+  double pose_rate_Hz;
+} inkwell_abilities;
+
+/* Reads the value from the device. `size` is sizeof(inkwell_abilities). */
+INKWELL_API inkwell_result inkwell_get_abilities(inkwell_arm* arm, inkwell_abilities* abilities, size_t size);
+
+/* Computes the force at the probe that requires these torques at these joint angles. Returns INKWELL_REFUSED and the
+ * force 0 if the arm is stretched or folded, because no force has these torques. */
+INKWELL_API inkwell_result inkwell_force_of_torques(inkwell_arm* arm, const double joint_rad[3],
+                                                    const double torque_Nm[3], double force_N[3]);
 
 /* Cause and remedy of a fault code; never NULL. */
 INKWELL_API const char* inkwell_fault_text(int fault);
@@ -253,9 +316,9 @@ INKWELL_API const char* inkwell_fault_name(int fault);
 
 /* ---- force -------------------------------------------------------------------------------------------------- */
 
-/* One program drives an arm at a time, and the board decides which program. A program claims the arm with its first
- * call of inkwell_enable_force(), inkwell_set_force(), inkwell_start_servo() or inkwell_place_*(). The claim lasts
- * until inkwell_close(). If the program exits without this call, the board ends the claim after one second. While a
+/* One program drives an arm at a time, and the board decides which program. A program claims the arm with
+ * inkwell_claim(), or with its first call of inkwell_enable_force(), inkwell_set_force(), inkwell_start_servo() or
+ * inkwell_place_*(). The claim lasts until inkwell_release() or inkwell_close(). If the program exits without this call, the board ends the claim after one second. While a
  * program drives the arm, these functions, inkwell_disable_force(), inkwell_clear_fault() and parameter changes return
  * INKWELL_IN_USE in every other program. inkwell_error_text() then names the driver. Any program may read, record and
  * call inkwell_stop(). */
@@ -269,6 +332,12 @@ INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
 /* Switches the force off immediately, whichever program drives the arm, and returns when the force is off. */
 INKWELL_API inkwell_result inkwell_stop(inkwell_arm* arm);
+
+/* Claims the arm without a force. A control loop whose later calls must not wait calls this function first. */
+INKWELL_API inkwell_result inkwell_claim(inkwell_arm* arm);
+/* Reduces the force to zero, removes the shapes and ends the claim. The arm stays open. Returns INKWELL_REFUSED while a
+ * servo is running. Has no effect without a claim. */
+INKWELL_API inkwell_result inkwell_release(inkwell_arm* arm);
 
 /* Takes the arm over from its current driver. The driver's force fades, and its shapes are removed. */
 INKWELL_API inkwell_result inkwell_take_over(inkwell_arm* arm);
@@ -306,6 +375,15 @@ INKWELL_API inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_forc
  * lost link has switched the force off, it returns INKWELL_FORCE_LOST. This result lasts until the force is on again,
  * or until this program calls a function that switches the force. In the servo, return the force instead. */
 INKWELL_API inkwell_result inkwell_set_force(inkwell_arm* arm, const double force_N[3]);
+
+/* Sets the force that requires these joint torques at the newest pose, as inkwell_set_force() does. Returns
+ * INKWELL_REFUSED and sets the force 0 if the arm is stretched or folded. */
+INKWELL_API inkwell_result inkwell_set_joint_torques(inkwell_arm* arm, const double torque_Nm[3]);
+
+/* Schedules this arm's threads, which read poses, send forces and call the servo, with SCHED_FIFO and this priority, 1
+ * to 99. 0 selects normal scheduling. Returns INKWELL_NO_PERMISSION if the user may not set real-time priorities. The
+ * library's mutexes inherit the priority of waiting threads. */
+INKWELL_API inkwell_result inkwell_set_thread_priority(inkwell_arm* arm, int priority);
 
 /* Function that the library calls at each pose, 1000 times per second, in a thread of the library. The function writes
  * the force on the hand, which is preset to 0. A component that is infinite or not a number counts as 0. The function

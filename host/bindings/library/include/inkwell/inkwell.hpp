@@ -1,4 +1,4 @@
-// C++ interface of libinkwell with RAII and exceptions.
+// C++14 interface of libinkwell with RAII and exceptions.
 //
 // Example:
 //   inkwell::Arm arm;                                  // the only arm on USB, or the arm that INKWELL_DEVICE names
@@ -27,7 +27,9 @@ namespace inkwell {
 using Pose = inkwell_pose;
 using Plane = inkwell_plane;
 using Sphere = inkwell_sphere;
-using Vector = std::array<double, 3>;  ///< in the workspace axes
+using State = inkwell_arm_state;
+using Abilities = inkwell_abilities;
+using Vector = std::array<double, 3>;  ///< in the workspace axes, or one value for each joint
 
 /// Thrown if a library function does not return INKWELL_OK. The function what() returns the error text.
 class Failure : public std::runtime_error {
@@ -59,6 +61,52 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
+/// See inkwell_wait_for_devices(). Returns false, and leaves the list unchanged, after the time-out.
+inline bool wait_for_devices(std::vector<inkwell_device>& known, double timeout_s) {
+  std::size_t count = known.size();
+  std::vector<inkwell_device> list = known;
+  list.resize(count + 16);
+  const inkwell_result result = inkwell_wait_for_devices(timeout_s, list.data(), list.size(), &count);
+  if (result == INKWELL_TIMED_OUT) return false;
+  require(result);
+  list.resize(std::min(count, list.size()));
+  known.swap(list);
+  return true;
+}
+
+/// See inkwell_kind_of_address().
+inline inkwell_address_kind kind_of_address(const std::string& address) {
+  inkwell_address_kind kind = INKWELL_ON_USB;
+  require(inkwell_kind_of_address(address.c_str(), &kind));
+  return kind;
+}
+
+/// Cause and remedy of a fault code, such as Pose::fault.
+inline std::string fault_text(int fault) { return inkwell_fault_text(fault); }
+/// Name of a fault code, such as "over_speed"; empty for a code without a name.
+inline std::string fault_name(int fault) {
+  const char* const name = inkwell_fault_name(fault);
+  return name == nullptr ? std::string() : name;
+}
+
+/// Samples of the selected signals.
+struct Samples {
+  std::vector<float> values;          ///< rows with one value for each selected signal
+  std::vector<std::int64_t> periods;  ///< control period of each row
+  std::uint64_t lost = 0;             ///< samples that were lost before the first row
+};
+
+/// Number of samples of a recording.
+struct Recorded {
+  std::uint64_t samples = 0, lost = 0;
+};
+
+/// Result of forward kinematics.
+struct Kinematics {
+  Vector position_m{};
+  std::array<double, 9> jacobian{};  ///< in m/rad, row by row
+};
+
 /// An open arm. The destructor closes the arm. Each function calls the C function of the same name. Each C++ function
 /// throws Failure if its C function does not return INKWELL_OK, and Disconnected while no poses arrive. Moving an Arm
 /// object also moves its running servo. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. A
@@ -72,6 +120,10 @@ class Arm {
   /// Accepts the addresses of inkwell_open().
   explicit Arm(const std::string& address = "") : opened_(new Opened) {
     require(inkwell_open(address.c_str(), &opened_->arm));
+  }
+  /// Throws Failure with INKWELL_TIMED_OUT if no pose arrives within this time of the host's clock.
+  Arm(const std::string& address, double timeout_s) : opened_(new Opened) {
+    require(inkwell_open_with_timeout(address.c_str(), timeout_s, &opened_->arm));
   }
 
   /// Returns the arm for the C interface, or null for a moved-from arm. Do not call inkwell_close() for this arm.
@@ -104,6 +156,32 @@ class Arm {
     require(inkwell_get_board_name(get(), name));
     return name;
   }
+
+  State state() const {
+    State state;
+    require(inkwell_get_state(get(), &state, sizeof state));
+    return state;
+  }
+  Abilities abilities() const {
+    Abilities abilities;
+    require(inkwell_get_abilities(get(), &abilities, sizeof abilities));
+    return abilities;
+  }
+  Kinematics forward_kinematics(const Vector& joint_rad) const {
+    Kinematics result;
+    require(inkwell_forward_kinematics(get(), joint_rad.data(), result.position_m.data(), result.jacobian.data()));
+    return result;
+  }
+  Vector force_of_torques(const Vector& joint_rad, const Vector& torque_Nm) const {
+    Vector force_N{};
+    require(inkwell_force_of_torques(get(), joint_rad.data(), torque_Nm.data(), force_N.data()));
+    return force_N;
+  }
+
+  void claim() { require(inkwell_claim(get())); }
+  void release() { require(inkwell_release(get())); }
+  void set_joint_torques(const Vector& torque_Nm) { require(inkwell_set_joint_torques(get(), torque_Nm.data())); }
+  void set_thread_priority(int priority) { require(inkwell_set_thread_priority(get(), priority)); }
 
   void enable_force(double timeout_s = 5.0) { require(inkwell_enable_force(get(), timeout_s)); }
   void disable_force() { require(inkwell_disable_force(get())); }
@@ -153,6 +231,16 @@ class Arm {
     const char* names[] = {name.c_str()};
     require(inkwell_set_parameters(get(), names, &value, 1));
   }
+  /// Changes all parameters in one control period.
+  void set_parameters(const std::vector<std::pair<std::string, double>>& changes) {
+    std::vector<const char*> names;
+    std::vector<double> values;
+    for (const auto& change : changes) {
+      names.push_back(change.first.c_str());
+      values.push_back(change.second);
+    }
+    require(inkwell_set_parameters(get(), names.data(), values.data(), names.size()));
+  }
   void store_parameters() { require(inkwell_store_parameters(get())); }
   void restore_parameters() { require(inkwell_restore_parameters(get())); }
   void factory_reset() { require(inkwell_factory_reset(get())); }
@@ -174,6 +262,46 @@ class Arm {
     inkwell_store store;
     require(inkwell_get_store(get(), &store));
     return store;
+  }
+
+  /// The simulated hand of an arm that was opened as "virtual".
+  void move_virtual_hand(const Vector& target_m, double stiffness_N_per_m = 300.0) {
+    require(inkwell_move_virtual_hand(get(), target_m.data(), stiffness_N_per_m));
+  }
+  void release_virtual_hand() { require(inkwell_release_virtual_hand(get())); }
+  void press_virtual_buttons(bool button_1, bool button_2) {
+    require(inkwell_press_virtual_buttons(get(), button_1 ? 1 : 0, button_2 ? 1 : 0));
+  }
+
+  /// Without names, it stops the stream.
+  void select_signals(const std::vector<std::string>& names) {
+    if (!opened_) return require(inkwell_select_signals(nullptr, nullptr, 0));
+    std::vector<const char*> texts;
+    for (const auto& name : names) texts.push_back(name.c_str());
+    const std::lock_guard<std::mutex> lock(opened_->scope_mutex);
+    require(inkwell_select_signals(get(), texts.data(), texts.size()));
+    opened_->signals = names.size();
+  }
+  /// Returns at most `rows` samples of the signals that select_signals() has selected, or none after the time-out.
+  Samples read_scope(std::size_t rows = 4096, double timeout_s = 1.0) {
+    Samples samples;
+    std::size_t count = 0;
+    if (!opened_) require(inkwell_read_samples(nullptr, timeout_s, nullptr, nullptr, 0, &count, nullptr));
+    const std::lock_guard<std::mutex> lock(opened_->scope_mutex);  // the signals do not change meanwhile
+    samples.values.resize(rows * opened_->signals);
+    samples.periods.resize(rows);
+    require(inkwell_read_samples(get(), timeout_s, samples.values.data(), samples.periods.data(),
+                                 opened_->signals > 0 ? rows : 0, &count, &samples.lost));
+    samples.values.resize(count * opened_->signals);
+    samples.periods.resize(count);
+    return samples;
+  }
+  /// Records the selected signals. The extension selects HDF5 or CSV.
+  void start_recording(const std::string& path) { require(inkwell_start_recording(get(), path.c_str())); }
+  Recorded stop_recording() {
+    Recorded recorded;
+    require(inkwell_stop_recording(get(), &recorded.samples, &recorded.lost));
+    return recorded;
   }
 
  private:
@@ -236,6 +364,8 @@ class Arm {
     inkwell_arm* arm = nullptr;
     std::mutex mutex;  ///< guards `servo`
     std::unique_ptr<ServoState> servo;
+    std::mutex scope_mutex;   ///< guards `signals`
+    std::size_t signals = 0;  ///< number of selected signals
   };
 
   static int call_servo(inkwell_arm*, const inkwell_pose* pose, double force_N[3], void* user) noexcept {
