@@ -1,15 +1,10 @@
 #include "host/bindings/dropins/arm_facts.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 namespace inkwell::dropins {
 namespace {
-
-constexpr int reach_steps = 12;  ///< per joint, from stop to stop
 
 double parameter(inkwell_arm* arm, const std::string& name) {
   double value = 0;
@@ -23,44 +18,7 @@ Vector of_each(inkwell_arm* arm, const std::string& before, const std::string& a
           parameter(arm, before + "3" + after)};
 }
 
-Workspace read_box(inkwell_arm* arm) {
-  Workspace box;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::string axis{"xyz"[i]};
-    box.minimum_m[i] = parameter(arm, "box_minimum_" + axis + "_m");
-    box.maximum_m[i] = parameter(arm, "box_maximum_" + axis + "_m");
-  }
-  return box;
-}
-
-Workspace read_reach(inkwell_arm* arm) {
-  const double elbow_minimum = parameter(arm, "elbow_minimum_rad"), elbow_maximum = parameter(arm, "elbow_maximum_rad");
-  const bool third_is_absolute = parameter(arm, "transmission") == 1.0;
-  const Vector lower{parameter(arm, "joint_1_minimum_rad"), parameter(arm, "joint_2_minimum_rad"), elbow_minimum};
-  const Vector upper{parameter(arm, "joint_1_maximum_rad"), parameter(arm, "joint_2_maximum_rad"), elbow_maximum};
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Workspace reach{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  for (int step = 0; step < (reach_steps + 1) * (reach_steps + 1) * (reach_steps + 1); ++step) {
-    double joint_rad[3];
-    int rest = step;
-    for (std::size_t i = 0; i < 3; ++i) {
-      joint_rad[i] = lower[i] + (upper[i] - lower[i]) * (rest % (reach_steps + 1)) / reach_steps;
-      rest /= reach_steps + 1;
-    }
-    if (third_is_absolute) joint_rad[2] += joint_rad[1];
-    double position_m[3];
-    require(inkwell_forward_kinematics(arm, joint_rad, position_m, nullptr));
-    for (std::size_t i = 0; i < 3; ++i) {
-      reach.minimum_m[i] = std::min(reach.minimum_m[i], position_m[i]);
-      reach.maximum_m[i] = std::max(reach.maximum_m[i], position_m[i]);
-    }
-  }
-  return reach;
-}
-
-double determinant(const std::array<double, 9>& m) {
-  return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
-}
+Vector vector(const double (&values)[3]) { return {values[0], values[1], values[2]}; }
 
 }  // namespace
 
@@ -69,23 +27,22 @@ void require(inkwell_result result) {
 }
 
 ArmFacts read_facts(inkwell_arm* arm) {
+  inkwell_abilities abilities;
+  require(inkwell_get_abilities(arm, &abilities, sizeof abilities));
   ArmFacts facts{};
-  facts.force_maximum_N = parameter(arm, "force_limit_N");
-  facts.box = read_box(arm);
-  facts.reach = read_reach(arm);
-  const Vector ratio = of_each(arm, "gear_ratio_", ""), constant = of_each(arm, "torque_constant_", "_Nm_per_A");
-  const Vector limit_A = of_each(arm, "current_limit_", "_A"), continuous_A = of_each(arm, "continuous_current_", "_A");
+  facts.force_maximum_N = abilities.force_N;
+  facts.force_continuous_N = abilities.continuous_force_N;
+  facts.stiffness_N_per_m = abilities.stiffness_N_per_m;
+  facts.damping_Ns_per_m = abilities.damping_Ns_per_m;
+  facts.joint_torque_full_Nm = vector(abilities.joint_torque_Nm);
+  facts.third_is_absolute = abilities.third_joint_is_absolute != 0;
+  facts.box = {vector(abilities.workspace_minimum_m), vector(abilities.workspace_maximum_m)};
+  facts.reach = {vector(abilities.reach_minimum_m), vector(abilities.reach_maximum_m)};
+  const Vector ratio = of_each(arm, "gear_ratio_", "");
   const Vector counts = of_each(arm, "encoder_", "_counts_per_turn"), reversed = of_each(arm, "encoder_", "_reversed");
-  facts.third_is_absolute = parameter(arm, "transmission") == 1.0;
-  const double stretched_m = parameter(arm, "link_2_m") + parameter(arm, "link_3_m");
-  facts.force_continuous_N = facts.force_maximum_N;
-  for (std::size_t i = 0; i < 3; ++i) {
-    facts.joint_torque_full_Nm[i] = constant[i] * ratio[i] * limit_A[i];
+  for (std::size_t i = 0; i < 3; ++i)
     facts.encoder_counts_per_rad[i] =
         (reversed[i] == 1.0 ? -1.0 : 1.0) * counts[i] * ratio[i] / (2.0 * std::numbers::pi);
-    facts.force_continuous_N =
-        std::min(facts.force_continuous_N, constant[i] * ratio[i] * continuous_A[i] / stretched_m);
-  }
   return facts;
 }
 
@@ -97,18 +54,8 @@ std::array<double, 9> jacobian_at(inkwell_arm* arm, const double (&joint_rad)[3]
 }
 
 Vector force_of_torques(inkwell_arm* arm, const inkwell_pose& pose, const Vector& torque_Nm) {
-  const auto jacobian = jacobian_at(arm, pose.joint_rad);
-  const double all = determinant(jacobian);
-  // Near a singularity the determinant approaches 0, and the computed forces become unbounded.
-  constexpr double smallest_m3 = 1e-6;
-  if (std::abs(all) < smallest_m3) return {};
-  // Solves J^T F = tau with Cramer's rule.
   Vector force_N{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    auto replaced = jacobian;
-    for (std::size_t joint = 0; joint < 3; ++joint) replaced[3 * axis + joint] = torque_Nm[joint];
-    force_N[axis] = determinant(replaced) / all;
-  }
+  inkwell_force_of_torques(arm, pose.joint_rad, torque_Nm.data(), force_N.data());  // 0 after an error
   return force_N;
 }
 

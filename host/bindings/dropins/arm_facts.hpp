@@ -16,7 +16,8 @@ struct Workspace {
 
 struct ArmFacts {
   double force_maximum_N;
-  double force_continuous_N;      ///< tolerated continuously by every motor, even with the arm stretched out
+  double force_continuous_N;  ///< tolerated continuously by every motor, even with the arm stretched out
+  double stiffness_N_per_m, damping_Ns_per_m;
   Vector joint_torque_full_Nm;    ///< at the motor current limits
   bool third_is_absolute;         ///< joint 3 is measured from the base, not from link 2
   Vector encoder_counts_per_rad;  ///< negative where an encoder is reversed

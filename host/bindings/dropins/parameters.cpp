@@ -9,8 +9,6 @@
 namespace inkwell::dropins {
 namespace {
 
-// Published stiffness and damping of the Omni. Programs scale their forces with these values.
-constexpr double stiffness_N_per_mm = 0.5, damping_Ns_per_mm = 0.002;
 constexpr double tabletop_offset_mm = 110.0;  // height of the origin above the table
 constexpr double input_axes = 6, output_axes = 3;
 /// HDAPI reports the gimbal angles as encoder counts with this resolution.
@@ -162,9 +160,9 @@ const Parameter table[] = {
      [](const Source& s, double* v) { *v = std::max(1.0, std::round(s.scheduler.measured_rate_Hz())); }, nullptr,
      nullptr, false},
     {0x2602, 0, "NOMINAL_MAX_STIFFNESS", "N/mm", 1, type_real, "0.5",
-     [](const Source&, double* v) { *v = stiffness_N_per_mm; }},
+     [](const Source& s, double* v) { *v = 1e-3 * facts(s).stiffness_N_per_m; }},
     {0x2609, 0, "NOMINAL_MAX_DAMPING", "N s/mm", 1, type_real, "0.002",
-     [](const Source&, double* v) { *v = damping_Ns_per_mm; }},
+     [](const Source& s, double* v) { *v = 1e-3 * facts(s).damping_Ns_per_m; }},
     {0x2603, 0, "NOMINAL_MAX_FORCE", "N", 1, type_real, "`force_limit_N` when the device was opened",
      [](const Source& s, double* v) { *v = facts(s).force_maximum_N; }},
     {0x2604, 0, "NOMINAL_MAX_CONTINUOUS_FORCE", "N", 1, type_real, "continuous force with the arm stretched out",
