@@ -96,7 +96,8 @@ class Records(unittest.TestCase):
     def setUpClass(cls):
         with inkwell.open("virtual") as arm:
             arm.set_force((0, 0, 0))
-            cls.records = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver, *arm.self_test()]
+            cls.records = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver, arm.state,
+                           arm.abilities, *arm.self_test()]
             cls.later = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver]
             cls.samples = arm.capture("supply_V", duration_s=0.01)
         with mock.patch.dict(os.environ, INKWELL_DEVICE="virtual"):
@@ -624,6 +625,75 @@ class Programs(unittest.TestCase):
         said = run("import os; os.environ['INKWELL_DEVICE'] = 'virtual'\n"
                    "import inkwell; print(inkwell.devices()[-1], inkwell.devices()[-1].is_virtual)")
         self.assertEqual(said.stdout, "<inkwell.Device 'virtual', a simulation> True\n", said.stderr)
+
+
+class States(unittest.TestCase):
+    """States, abilities, joint torques, claims, time limits and the list of arms."""
+
+    def test_state_and_abilities(self):
+        with inkwell.open("virtual", seed=3) as arm:
+            pose = arm.wait_for_pose()
+            state = arm.state
+            self.assertEqual(state.pose, pose)
+            self.assertTrue(state.is_referenced)
+            self.assertLess(abs(state.received_ns - time.time_ns()), 3600e9)
+            self.assertLess(state.received_monotonic_ns, time.monotonic_ns())
+            self.assertAlmostEqual(np.linalg.norm(state.quaternion), 1, places=5)
+            self.assertEqual(state.joint_speed_rad_per_s.shape, (3,))
+            abilities = arm.abilities
+            self.assertAlmostEqual(abilities.workspace_maximum_m[0], arm.parameters.box_maximum_x_m, places=6)
+            self.assertTrue(abilities.third_joint_is_absolute)
+            self.assertTrue((abilities.joint_minimum_rad < abilities.joint_maximum_rad).all())
+
+    def test_kinematics_and_joint_torques(self):
+        with inkwell.open("virtual", seed=3) as arm:
+            pose = arm.wait_for_pose()
+            position_m, jacobian = arm.forward_kinematics(pose.joint_rad)
+            np.testing.assert_allclose(position_m, pose.position_m, atol=1e-4)
+            wanted_N = np.array([0.4, 0.6, -0.3])
+            np.testing.assert_allclose(arm.force_of_torques(pose.joint_rad, jacobian.T @ wanted_N), wanted_N, atol=1e-4)
+            with self.assertRaisesRegex(inkwell.Refused, "stretched"):
+                arm.force_of_torques((0, 0.5, 0.5 + math.pi / 2), (1, 1, 1))
+            arm.virtual_hand.move((0, 0, -0.03))
+            arm.sleep(0.5)
+            arm.enable_force()
+            for _ in range(400):
+                arm.set_joint_torques(arm.forward_kinematics(arm.pose.joint_rad)[1].T @ wanted_N)
+                pose = arm.wait_for_pose()
+            np.testing.assert_allclose(pose.force_N, wanted_N, atol=0.05)
+            with self.assertRaisesRegex(TypeError, "joint torques in Nm"):
+                arm.set_joint_torques("strong")
+
+    def test_a_claim_is_a_separate_step(self):
+        with inkwell.open("virtual") as arm:
+            self.assertFalse(arm.driver.is_driven)
+            arm.claim()
+            self.assertTrue(arm.driver.is_this_arm)
+            arm.release()
+            self.assertFalse(arm.driver.is_driven)
+            with self.assertRaisesRegex(inkwell.BadArgument, "1 to 99"):
+                arm.set_thread_priority(100)
+
+    def test_opening_has_a_time_limit(self):
+        with self.assertRaises(inkwell.TimedOut):
+            inkwell.open("virtual", timeout_s=0)
+        with inkwell.open("virtual", timeout_s=60) as arm:
+            self.assertTrue(arm.is_referenced)
+        with self.assertRaisesRegex(TypeError, "time-out in seconds"):
+            inkwell.open("virtual", timeout_s="soon")
+
+    def test_changes_of_the_list_of_arms(self):
+        known = inkwell.devices()
+        with self.assertRaises(inkwell.TimedOut):
+            inkwell.wait_for_devices(known, timeout_s=0.3)
+        with mock.patch.dict(os.environ, INKWELL_DEVICE="virtual"):
+            found = inkwell.wait_for_devices(known)
+            self.assertEqual(found[:-1], known)
+            self.assertEqual(found[-1].address, "virtual")
+        with mock.patch.dict(os.environ, INKWELL_DEVICE="usbip:127.0.0.1:1"):
+            self.assertEqual(inkwell.devices(), known)
+        with self.assertRaises(inkwell.BadArgument):
+            inkwell.wait_for_devices(known, timeout_s=math.nan)
 
 
 class Help(unittest.TestCase):

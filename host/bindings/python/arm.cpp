@@ -60,8 +60,11 @@ Arm::Use::~Use() {
   if (--arm_.uses_ == 0) arm_.unused_.notify_all();
 }
 
-Arm::Arm(const std::string& address) {
-  call([&] { return inkwell_open(address.c_str(), &arm_); });
+Arm::Arm(const std::string& address, std::optional<double> timeout_s) {
+  call([&] {
+    return timeout_s ? inkwell_open_with_timeout(address.c_str(), *timeout_s, &arm_)
+                     : inkwell_open(address.c_str(), &arm_);
+  });
 }
 
 Arm::~Arm() {

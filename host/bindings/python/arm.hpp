@@ -8,6 +8,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +21,8 @@ namespace inkwell::python {
 
 class Arm {
  public:
-  explicit Arm(const std::string& address);
+  /// Without a time-out, the library's time-out applies.
+  explicit Arm(const std::string& address, std::optional<double> timeout_s = std::nullopt);
   ~Arm();
   Arm(const Arm&) = delete;
   Arm& operator=(const Arm&) = delete;
@@ -34,6 +36,16 @@ class Arm {
   inkwell_information information();
   std::string board_name();
   bool is_referenced();
+
+  inkwell_arm_state state();
+  inkwell_abilities abilities();
+  /// (position_m, Jacobian in row-major order)
+  std::pair<Vector, std::array<double, 9>> forward_kinematics(const Vector& joint_rad);
+  Vector force_of_torques(const Vector& joint_rad, const Vector& torque_Nm);
+  void set_joint_torques(const Vector& torque_Nm);
+  void claim();
+  void release();
+  void set_thread_priority(int priority);
 
   void enable_force(double timeout_s);
   void disable_force();

@@ -1,4 +1,6 @@
 // Native module of the Python package.
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,6 +99,20 @@ std::vector<inkwell_device> list_devices() {
   return devices;
 }
 
+/// Returns the new list, or None if the list has not changed within the time-out.
+std::optional<std::vector<inkwell_device>> wait_for_devices(std::vector<inkwell_device> known, double timeout_s) {
+  std::size_t count = known.size();
+  known.resize(count + 16);
+  try {
+    call([&] { return inkwell_wait_for_devices(timeout_s, known.data(), known.size(), &count); });
+  } catch (py::error_already_set& error) {
+    if (!error.matches(py::module_::import("inkwell.errors").attr("TimedOut"))) throw;
+    return std::nullopt;
+  }
+  known.resize(std::min(count, known.size()));
+  return known;
+}
+
 py::list parameters() {
   py::list rows;
   for (std::size_t i = 0; i < inkwell_parameter_count(); ++i) {
@@ -184,6 +200,76 @@ void define_pose(py::module_& module) {
       .def_property_readonly("in_inkwell", flag_of(&inkwell_pose::in_inkwell), "the stylus rests in the inkwell")
       .def_readonly("supply_V", &inkwell_pose::supply_V, "supply of the motors, V")
       .def("__repr__", &describe);
+}
+
+void define_arm_state(py::module_& module) {
+  using State = inkwell_arm_state;
+  py::class_<State> state_type(module, "ArmState", "A pose with its validity, speeds and times.");
+  make_value(state_type, &State::pose, &State::is_referenced, &State::received_ns, &State::received_monotonic_ns,
+             &State::quaternion, &State::angular_velocity_rad_per_s, &State::joint_speed_rad_per_s,
+             &State::joint_torque_Nm);
+  state_type.def_readonly("pose", &State::pose)
+      .def_property_readonly("is_referenced", flag_of(&State::is_referenced),
+                             "True: position, joints and rotation of the pose are valid")
+      .def_readonly("received_ns", &State::received_ns,
+                    "host time of the pose's arrival, ns since 1970, as in time.time_ns()")
+      .def_readonly("received_monotonic_ns", &State::received_monotonic_ns, "the same as in time.monotonic_ns()")
+      .def_property_readonly("quaternion", array_of(&State::quaternion),
+                             "rotation of the stylus as x, y, z, w; shape (4,)")
+      .def_property_readonly("angular_velocity_rad_per_s", array_of(&State::angular_velocity_rad_per_s),
+                             "of the stylus in the workspace axes, over the last 8 ms, rad/s; shape (3,)")
+      .def_property_readonly("joint_speed_rad_per_s", array_of(&State::joint_speed_rad_per_s),
+                             "over the last 8 ms, rad/s; shape (3,)")
+      .def_property_readonly("joint_torque_Nm", array_of(&State::joint_torque_Nm),
+                             "that pose.force_N requires, Nm; shape (3,)")
+      .def("__repr__", [](const py::object& self) {
+        return describe_attributes(self, {"pose", "is_referenced", "received_ns", "quaternion",
+                                          "angular_velocity_rad_per_s", "joint_speed_rad_per_s", "joint_torque_Nm"});
+      });
+}
+
+void define_abilities(py::module_& module) {
+  using Abilities = inkwell_abilities;
+  py::class_<Abilities> type(module, "Abilities", "Capabilities of an arm, from its parameters.");
+  make_value(type, &Abilities::workspace_minimum_m, &Abilities::workspace_maximum_m, &Abilities::workspace_radius_m,
+             &Abilities::reach_minimum_m, &Abilities::reach_maximum_m, &Abilities::joint_minimum_rad,
+             &Abilities::joint_maximum_rad, &Abilities::third_joint_is_absolute, &Abilities::force_N,
+             &Abilities::continuous_force_N, &Abilities::joint_torque_Nm, &Abilities::continuous_joint_torque_Nm,
+             &Abilities::stiffness_N_per_m, &Abilities::damping_Ns_per_m, &Abilities::pose_rate_Hz);
+  type.def_property_readonly("workspace_minimum_m", array_of(&Abilities::workspace_minimum_m),
+                             "corner of the arm's box, m; shape (3,)")
+      .def_property_readonly("workspace_maximum_m", array_of(&Abilities::workspace_maximum_m),
+                             "corner of the arm's box, m; shape (3,)")
+      .def_readonly("workspace_radius_m", &Abilities::workspace_radius_m, "of the largest sphere in the box, m")
+      .def_property_readonly("reach_minimum_m", array_of(&Abilities::reach_minimum_m),
+                             "range of the probe within the joint stops, m; shape (3,)")
+      .def_property_readonly("reach_maximum_m", array_of(&Abilities::reach_maximum_m),
+                             "range of the probe within the joint stops, m; shape (3,)")
+      .def_property_readonly("joint_minimum_rad", array_of(&Abilities::joint_minimum_rad),
+                             "joint stops, rad; the third is that of link 3 relative to link 2; shape (3,)")
+      .def_property_readonly("joint_maximum_rad", array_of(&Abilities::joint_maximum_rad),
+                             "joint stops, rad; the third is that of link 3 relative to link 2; shape (3,)")
+      .def_property_readonly("third_joint_is_absolute", flag_of(&Abilities::third_joint_is_absolute),
+                             "True: joint 3 is measured from the base, as on the Omni")
+      .def_readonly("force_N", &Abilities::force_N, "largest force, N")
+      .def_readonly("continuous_force_N", &Abilities::continuous_force_N,
+                    "force that every motor tolerates continuously in every pose, N")
+      .def_property_readonly("joint_torque_Nm", array_of(&Abilities::joint_torque_Nm),
+                             "at the current limits of the motors, Nm; shape (3,)")
+      .def_property_readonly("continuous_joint_torque_Nm", array_of(&Abilities::continuous_joint_torque_Nm),
+                             "that the motors tolerate continuously, Nm; shape (3,)")
+      .def_readonly("stiffness_N_per_m", &Abilities::stiffness_N_per_m,
+                    "recommended maximum for forces of a program at 1000 Hz, N/m")
+      .def_readonly("damping_Ns_per_m", &Abilities::damping_Ns_per_m,
+                    "recommended maximum for forces of a program at 1000 Hz, Ns/m")
+      .def_readonly("pose_rate_Hz", &Abilities::pose_rate_Hz, "poses per second, Hz")
+      .def("__repr__", [](const py::object& self) {
+        return describe_attributes(
+            self,
+            {"workspace_minimum_m", "workspace_maximum_m", "workspace_radius_m", "reach_minimum_m", "reach_maximum_m",
+             "joint_minimum_rad", "joint_maximum_rad", "third_joint_is_absolute", "force_N", "continuous_force_N",
+             "joint_torque_Nm", "continuous_joint_torque_Nm", "stiffness_N_per_m", "damping_Ns_per_m", "pose_rate_Hz"});
+      });
 }
 
 void define_device_and_information(py::module_& module) {
@@ -300,7 +386,7 @@ void define_driver(py::module_& module) {
 
 void define_arm(py::module_& module) {
   py::class_<Arm>(module, "Arm")
-      .def(py::init<const std::string&>())
+      .def(py::init<const std::string&, std::optional<double>>(), py::arg("address"), py::arg("timeout_s") = py::none())
       .def("close", &Arm::close)
       .def("is_closed", &Arm::is_closed)
       .def("pose", &Arm::pose)
@@ -309,6 +395,14 @@ void define_arm(py::module_& module) {
       .def("is_referenced", &Arm::is_referenced)
       .def("information", &Arm::information)
       .def("board_name", &Arm::board_name)
+      .def("state", &Arm::state)
+      .def("abilities", &Arm::abilities)
+      .def("forward_kinematics", &Arm::forward_kinematics)
+      .def("force_of_torques", &Arm::force_of_torques)
+      .def("set_joint_torques", &Arm::set_joint_torques)
+      .def("claim", &Arm::claim)
+      .def("release", &Arm::release)
+      .def("set_thread_priority", &Arm::set_thread_priority)
       .def("enable_force", &Arm::enable_force)
       .def("disable_force", &Arm::disable_force)
       .def("stop", &Arm::stop)
@@ -347,6 +441,8 @@ PYBIND11_MODULE(_native, module) {
   module.doc() = "Bindings of libinkwell for the Python files of the package.";
   inkwell::python::define_states(module);
   inkwell::python::define_pose(module);
+  inkwell::python::define_arm_state(module);
+  inkwell::python::define_abilities(module);
   inkwell::python::define_device_and_information(module);
   inkwell::python::define_store(module);
   inkwell::python::define_self_test(module);
@@ -355,6 +451,7 @@ PYBIND11_MODULE(_native, module) {
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,
              "Lists the arms on this computer's USB, and the virtual board that INKWELL_DEVICE names.");
+  module.def("wait_for_devices", &inkwell::python::wait_for_devices);
   module.def("faults", &inkwell::python::faults);
   module.def("parameters", &inkwell::python::parameters);
   module.def("signals", &inkwell::python::signals);

@@ -18,9 +18,11 @@ from . import _requirements
 
 _requirements.check()
 
-from ._native import Device, Driver, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem, devices
+from ._native import (Abilities, ArmState, Device, Driver, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem,
+                      devices)
 from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open
+from .device_list import wait_for_devices
 from .errors import (BadArgument, Disconnected, Error, Failed, ForceLost, Incompatible, InUse, NoDevice, NoPermission,
                      Refused, TimedOut)
 from .faults import Fault
@@ -32,10 +34,10 @@ from .shapes import Plane, Sphere, Surface
 
 __version__ = _version()
 __all__ = [
-    "Arm", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceLost", "ForceMode", "InUse",
+    "Abilities", "Arm", "ArmState", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceLost", "ForceMode", "InUse",
     "Incompatible", "Information", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
     "Refused", "Samples", "Signal", "Sphere", "State", "Store", "Stored", "Surface", "Test", "TestItem", "TimedOut",
-    "VirtualHand", "devices", "open", "parameters_table", "signals",
+    "VirtualHand", "devices", "open", "parameters_table", "signals", "wait_for_devices",
 ]
 
 

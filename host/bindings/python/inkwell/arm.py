@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native, errors
-from ._native import Driver, ForceMode, Information, Pose, TestItem
+from ._native import Abilities, ArmState, Driver, ForceMode, Information, Pose, TestItem
 from .parameters import Parameters
 from .scope import Samples
 from .shapes import Plane, Sphere
@@ -90,8 +90,13 @@ class Arm:
     let other threads run. Errors are raised as inkwell.Error.
     """
 
-    def __init__(self, address: str | None = None) -> None:
-        self._native = _call(_native.Arm, "" if address is None else address, wants="the address as text, or None")
+    def __init__(self, address: str | None = None, timeout_s: float | None = None) -> None:
+        text = "" if address is None else address
+        if timeout_s is None:
+            self._native = _call(_native.Arm, text, wants="the address as text, or None")
+        else:
+            self._native = _call(_native.Arm, text, timeout_s,
+                                 wants="the address as text or None, and the time-out in seconds")
         self._signals: tuple[str, ...] = ()
         self._servo_rate_Hz = self._native.information().servo_rate_Hz
         self.parameters = Parameters(self._native)
@@ -169,7 +174,52 @@ class Arm:
             yield pose
             pose = self.wait_for_pose()
 
+    # ---- state, abilities ------------------------------------------------------------------------------------
+
+    @property
+    def state(self) -> ArmState:
+        """The newest pose with its validity, joint speeds, angular velocity and the host's time of its arrival. Raises
+        Disconnected while no poses arrive."""
+        return self._native.state()
+
+    @property
+    def abilities(self) -> Abilities:
+        """Workspace, forces, torques and joint stops, read from the arm."""
+        return self._native.abilities()
+
+    def forward_kinematics(self, joint_rad: Vector) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Returns the probe's position (m; shape (3,)) and Jacobian (m/rad; shape (3, 3)) for these joint angles.
+
+        On the Omni, joint 1 is positive to the left, and joint 2 is the elevation of link 2. Joint 3 is the direction of
+        link 3, measured from the base; at 0 link 3 points straight down. The angle of link 3 relative to link 2 is joint 3
+        minus joint 2."""
+        position_m, jacobian = _call(self._native.forward_kinematics, joint_rad, wants="three joint angles in rad")
+        return np.array(position_m), np.array(jacobian).reshape(3, 3)
+
+    def force_of_torques(self, joint_rad: Vector, torque_Nm: Vector) -> npt.NDArray[np.float64]:
+        """Returns the force at the probe that requires these joint torques. Raises Refused if the arm is stretched or
+        folded."""
+        return np.array(_call(self._native.force_of_torques, joint_rad, torque_Nm,
+                              wants="three joint angles in rad and three torques in Nm"))
+
     # ---- force -----------------------------------------------------------------------------------------------
+
+    def claim(self) -> None:
+        """Claims the arm without a force. Raises InUse while another program drives the arm."""
+        self._native.claim()
+
+    def release(self) -> None:
+        """Reduces the force to zero, removes the shapes and ends the claim. The arm stays open."""
+        self._native.release()
+
+    def set_joint_torques(self, torque_Nm: Vector) -> None:
+        """Sets the force that requires these joint torques (Nm; shape (3,)) at the newest pose, as set_force() does."""
+        _call(self._native.set_joint_torques, torque_Nm, wants="three numbers, the joint torques in Nm")
+
+    def set_thread_priority(self, priority: int) -> None:
+        """Schedules the arm's threads with SCHED_FIFO and this priority, 1 to 99; 0 selects normal scheduling. Raises
+        NoPermission if the user may not set real-time priorities."""
+        _call(self._native.set_thread_priority, priority, wants="a whole number from 0 to 99")
 
     def enable_force(self, timeout_s: float = 5.0) -> None:
         """Switches the force on and waits until it is on. From here on the hand may feel a force. Raises Refused with the
@@ -337,7 +387,7 @@ class Arm:
 
 
 def open(address: str | None = None, *, seed: int | None = None, arm: str | os.PathLike[str] | None = None,
-         elf: str | os.PathLike[str] | None = None) -> Arm:
+         elf: str | os.PathLike[str] | None = None, timeout_s: float | None = None) -> Arm:
     """Opens an arm; its force is off.
 
     address: None           the address in the environment variable INKWELL_DEVICE, otherwise the only arm on USB
@@ -345,6 +395,8 @@ def open(address: str | None = None, *, seed: int | None = None, arm: str | os.P
              "usbip:HOST:PORT"  the arm of a USB/IP server, such as a running virtual board;
                             "usbip:unix:PATH" for a Unix socket
              "virtual"      a new virtual board, which exits with the arm
+
+    timeout_s: time of the host's clock for the first pose; by default 60 s. Afterwards TimedOut is raised.
 
     Options of a new virtual board:
 
@@ -364,7 +416,7 @@ def open(address: str | None = None, *, seed: int | None = None, arm: str | os.P
         if file is not None:
             options[name] = _file_name(name, file)
     if not options:
-        return Arm(address)
+        return Arm(address, timeout_s)
     if not isinstance(address, str) or not (address == "virtual" or address.startswith(("virtual:", "virtual?"))):
         raise errors.BadArgument(f'The option {next(iter(options))} requires a virtual board, not {address!r}. '
                                  'Open "virtual".')
@@ -375,7 +427,8 @@ def open(address: str | None = None, *, seed: int | None = None, arm: str | os.P
         name = each.partition("=")[0]
         if name in options:
             raise errors.BadArgument(f"The option {name} is given twice, also in the address {address!r}. Give it once.")
-    return Arm("virtual?" + "&".join(filter(None, [given, *(f"{name}={value}" for name, value in options.items())])))
+    return Arm("virtual?" + "&".join(filter(None, [given, *(f"{name}={value}" for name, value in options.items())])),
+               timeout_s)
 
 
 def _file_name(option: str, file: str | os.PathLike[str]) -> str:
