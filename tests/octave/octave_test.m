@@ -30,6 +30,38 @@ assert(information.is_virtual);
 assert(isempty(information.serial_number), false);
 assert(information.board, 'omni_driver');
 
+% States, abilities, joint torques and claims.
+state = inkwell_state(arm);
+assert(state.pose.is_referenced);
+assert(abs(state.received_s - time()) < 3600);
+assert(norm(state.quaternion), 1, 1e-5);
+assert(size(state.joint_speed_rad_per_s), [3 1]);
+assert(size(state.angular_velocity_rad_per_s), [3 1]);
+abilities = inkwell_abilities(arm);
+assert(abilities.workspace_maximum_m(1), inkwell_parameters(arm, 'box_maximum_x_m'), 1e-6);
+assert(abilities.third_joint_is_absolute);
+[position_m, jacobian] = inkwell_kinematics(arm, state.pose.joint_rad);
+assert(position_m, state.pose.position_m, 1e-4);
+torque_Nm = jacobian' * [0.4; 0.6; -0.3];
+assert(inkwell_joint_torques(arm, state.pose.joint_rad, torque_Nm), [0.4; 0.6; -0.3], 1e-4);
+refused(@() inkwell_joint_torques(arm, [0 0.5 0.5 + pi / 2], torque_Nm), 'stretched');
+assert(! inkwell_driver(arm).is_driven);
+inkwell_claim(arm);
+assert(inkwell_driver(arm).is_this_arm);
+inkwell_joint_torques(arm, [0 0 0]);
+inkwell_claim(arm, false);
+assert(! inkwell_driver(arm).is_driven);
+refused(@() inkwell_priority(arm, 100), '1 to 99');
+assert(iscellstr(inkwell_devices()));
+try
+  inkwell_devices(0);
+  error('a list that does not change was returned');
+catch error_of
+  assert(error_of.identifier, 'inkwell:timed_out');
+end
+assert(regexp(inkwell_version(), '^\d+\.\d+\.\d+$'), 1);
+inkwell_close(inkwell_open('virtual', [], 60));
+
 % Parameters: one, several, all, unknown, out of range.
 assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 800);
 inkwell_parameters(arm, {'wall_stiffness_N_per_m', 'wall_damping_Ns_per_m'}, [500 1.5]);

@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <mex.h>
@@ -111,7 +112,8 @@ using Answers = std::vector<mxArray*>;
 Answers open(const Arguments& arguments) {
   const std::string address = arguments.empty() ? std::string() : text(arguments[0]);
   inkwell_arm* arm = nullptr;
-  require(inkwell_open(address.c_str(), &arm));
+  require(arguments.size() > 1 ? inkwell_open_with_timeout(address.c_str(), number(arguments[1]), &arm)
+                               : inkwell_open(address.c_str(), &arm));
   arms[++newest] = arm;
   return {mxCreateDoubleScalar(newest)};
 }
@@ -199,12 +201,102 @@ Answers pose(const Arguments& arguments) {
 
 /// Returns the last pose without an error if no poses arrive.
 Answers last_pose(const Arguments& arguments) {
-  inkwell_pose pose{};
-  int is_referenced = 0;
-  inkwell_get_pose(find(arguments)->second, &pose);
-  inkwell_is_referenced(find(arguments)->second, &is_referenced);
-  return {struct_of(pose, is_referenced != 0)};
+  inkwell_arm_state last{};
+  inkwell_get_state(find(arguments)->second, &last, sizeof last);
+  return {struct_of(last.pose, last.is_referenced != 0)};
 }
+
+// ---- states, abilities, joint torques, claims, list of arms ----
+
+mxArray* struct_of(const std::vector<std::pair<const char*, mxArray*>>& fields) {
+  std::vector<const char*> names;
+  for (const auto& field : fields) names.push_back(field.first);
+  mxArray* structure = mxCreateStructMatrix(1, 1, static_cast<int>(names.size()), names.data());
+  for (const auto& [name, value] : fields) mxSetField(structure, 0, name, value);
+  return structure;
+}
+
+Answers state(const Arguments& arguments) {
+  inkwell_arm_state state;
+  require(inkwell_get_state(find(arguments)->second, &state, sizeof state));
+  return {struct_of({{"pose", struct_of(state.pose, state.is_referenced != 0)},
+                     {"received_s", mxCreateDoubleScalar(1e-9 * static_cast<double>(state.received_ns))},
+                     {"quaternion", column(state.quaternion, 4)},
+                     {"angular_velocity_rad_per_s", column(state.angular_velocity_rad_per_s, 3)},
+                     {"joint_speed_rad_per_s", column(state.joint_speed_rad_per_s, 3)},
+                     {"joint_torque_Nm", column(state.joint_torque_Nm, 3)}})};
+}
+
+Answers abilities(const Arguments& arguments) {
+  inkwell_abilities abilities;
+  require(inkwell_get_abilities(find(arguments)->second, &abilities, sizeof abilities));
+  return {struct_of({{"workspace_minimum_m", column(abilities.workspace_minimum_m, 3)},
+                     {"workspace_maximum_m", column(abilities.workspace_maximum_m, 3)},
+                     {"workspace_radius_m", mxCreateDoubleScalar(abilities.workspace_radius_m)},
+                     {"reach_minimum_m", column(abilities.reach_minimum_m, 3)},
+                     {"reach_maximum_m", column(abilities.reach_maximum_m, 3)},
+                     {"joint_minimum_rad", column(abilities.joint_minimum_rad, 3)},
+                     {"joint_maximum_rad", column(abilities.joint_maximum_rad, 3)},
+                     {"third_joint_is_absolute", mxCreateLogicalScalar(abilities.third_joint_is_absolute != 0)},
+                     {"force_N", mxCreateDoubleScalar(abilities.force_N)},
+                     {"continuous_force_N", mxCreateDoubleScalar(abilities.continuous_force_N)},
+                     {"joint_torque_Nm", column(abilities.joint_torque_Nm, 3)},
+                     {"continuous_joint_torque_Nm", column(abilities.continuous_joint_torque_Nm, 3)},
+                     {"stiffness_N_per_m", mxCreateDoubleScalar(abilities.stiffness_N_per_m)},
+                     {"damping_Ns_per_m", mxCreateDoubleScalar(abilities.damping_Ns_per_m)},
+                     {"pose_rate_Hz", mxCreateDoubleScalar(abilities.pose_rate_Hz)}})};
+}
+
+Answers kinematics(const Arguments& arguments) {
+  double position_m[3], jacobian[9];
+  require(
+      inkwell_forward_kinematics(find(arguments)->second, vector(argument(arguments, 1)).data(), position_m, jacobian));
+  mxArray* matrix = mxCreateDoubleMatrix(3, 3, mxREAL);
+  for (int row = 0; row < 3; ++row)
+    for (int each = 0; each < 3; ++each) mxGetPr(matrix)[3 * each + row] = jacobian[3 * row + each];
+  return {column(position_m, 3), matrix};
+}
+
+/// With two vectors, returns the force of these joint angles and torques. With one vector, sets the joint torques.
+Answers joint_torques(const Arguments& arguments) {
+  inkwell_arm* const arm = find(arguments)->second;
+  const auto first = vector(argument(arguments, 1));
+  if (arguments.size() < 3) {
+    require(inkwell_set_joint_torques(arm, first.data()));
+    return {};
+  }
+  double force_N[3];
+  require(inkwell_force_of_torques(arm, first.data(), vector(arguments[2]).data(), force_N));
+  return {column(force_N, 3)};
+}
+
+Answers claim(const Arguments& arguments) {
+  const bool on = number(argument(arguments, 1)) != 0.0;
+  require(on ? inkwell_claim(find(arguments)->second) : inkwell_release(find(arguments)->second));
+  return {};
+}
+
+Answers priority(const Arguments& arguments) {
+  require(inkwell_set_thread_priority(find(arguments)->second, static_cast<int>(number(argument(arguments, 1)))));
+  return {};
+}
+
+mxArray* cell_of(const std::vector<inkwell_device>& devices) {
+  mxArray* cell = mxCreateCellMatrix(static_cast<mwSize>(devices.size()), 1);
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    mxSetCell(cell, static_cast<mwIndex>(i), mxCreateString(devices[i].address));
+  return cell;
+}
+
+/// Returns the addresses of all arms. With a time, waits until this list changes.
+Answers devices(const Arguments& arguments) {
+  auto known = inkwell::devices();
+  if (!arguments.empty() && !inkwell::wait_for_devices(known, number(arguments[0])))
+    throw inkwell::Failure(INKWELL_TIMED_OUT);
+  return {cell_of(known)};
+}
+
+Answers version(const Arguments&) { return {mxCreateString(inkwell_version())}; }
 
 Answers sleep(const Arguments& arguments) {
   require(inkwell_sleep(find(arguments)->second, number(argument(arguments, 1))));
@@ -390,6 +482,14 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"close", close},
     {"pose", pose},
     {"last_pose", last_pose},
+    {"state", state},
+    {"abilities", abilities},
+    {"kinematics", kinematics},
+    {"joint_torques", joint_torques},
+    {"claim", claim},
+    {"priority", priority},
+    {"devices", devices},
+    {"version", version},
     {"sleep", sleep},
     {"enable", enable},
     {"stop", stop},
@@ -422,6 +522,7 @@ Answers run(const Arguments& arguments) {
 /// Returns the error identifier for a result code.
 const char* identifier_of(inkwell_result result) {
   switch (result) {
+    case INKWELL_TIMED_OUT: return "inkwell:timed_out";
     case INKWELL_DISCONNECTED: return "inkwell:disconnected";
     case INKWELL_FORCE_LOST: return "inkwell:force_lost";
     default: return "inkwell:refused";
