@@ -33,7 +33,7 @@ KINDS = {
         LIBRARY + r"libinkwell\.so", LIBRARY + r"cmake/Inkwell/InkwellConfig\.cmake",
         LIBRARY + r"cmake/Inkwell/InkwellConfig-\w+\.cmake", LIBRARY + r"cmake/Inkwell/InkwellConfigVersion\.cmake",
         r"share/pkgconfig/inkwell\.pc",
-        r"share/doc/inkwell-dev/examples/\w+\.(?:c|cpp)",
+        r"share/doc/inkwell-dev/examples/\w+\.(?:c|cpp|hpp)",
     ],
 }
 # Additional files that Debian requires in packages.

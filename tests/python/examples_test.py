@@ -165,7 +165,9 @@ class Examples(unittest.TestCase):
         sources = [*HOST.glob("library/examples/*.c*"), *HOST.glob("python/examples/*.py")]
         self.assertGreaterEqual(len(sources), 11)
         for source in sources:
-            self.assertLess(len(source.read_text().splitlines()), 60, source)
+            is_class_of_framework = source.name == "ros2_control_system.cpp"
+            self.assertLess(len(source.read_text().splitlines()), 150 if is_class_of_framework else 60, source)
+        self.assertLess(len((HOST / "library/examples/chai3d_device.hpp").read_text().splitlines()), 150)
 
 
 if __name__ == "__main__":
