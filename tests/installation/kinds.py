@@ -32,7 +32,7 @@ KINDS = {
         r"include/inkwell/inkwell\.h", r"include/inkwell/inkwell\.hpp",
         LIBRARY + r"libinkwell\.so", LIBRARY + r"cmake/Inkwell/InkwellConfig\.cmake",
         LIBRARY + r"cmake/Inkwell/InkwellConfig-\w+\.cmake", LIBRARY + r"cmake/Inkwell/InkwellConfigVersion\.cmake",
-        r"share/pkgconfig/inkwell\.pc",
+        LIBRARY + r"pkgconfig/inkwell\.pc",
         r"share/doc/inkwell-dev/examples/\w+\.(?:c|cpp|hpp)",
     ],
 }

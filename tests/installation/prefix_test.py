@@ -141,7 +141,7 @@ class OutsideProject(unittest.TestCase):
         self.assertNotRegex(command["command"], r" -[WfO]")
 
     def test_pkg_config(self):
-        environment = os.environ | {"PKG_CONFIG_PATH": str(PREFIX / "share/pkgconfig")}
+        environment = os.environ | {"PKG_CONFIG_PATH": str(PREFIX / "lib/pkgconfig")}
         flags = run("pkg-config", "--cflags", "--libs", "inkwell", env=environment).split()
         self.assertEqual(VERSION, run("pkg-config", "--modversion", "inkwell", env=environment).strip())
         example = PREFIX / "share/doc/inkwell-dev/examples/spring_to_a_point.c"
