@@ -130,20 +130,20 @@ TEST_CASE("states, poses and forces allocate no memory, even while the cable is 
   const double none_N[3]{};
   inkwell_arm_state state;
   inkwell_pose pose;
-  std::array<inkwell_result, 3> results{};
+  std::array<inkwell_result, 4> results{};
   const auto loop = [&] {
     results = {inkwell_get_state(driver.arm, &state, sizeof state), inkwell_get_pose(driver.arm, &pose),
-               inkwell_set_force(driver.arm, none_N)};
+               inkwell_set_force(driver.arm, none_N), inkwell_set_joint_torques(driver.arm, none_N)};
   };
   loop();
   CHECK(allocations_of([] { delete new int; }) == 100);  // the counter works
   CHECK(allocations_of(loop) == 0);
-  CHECK(results == std::array{INKWELL_OK, INKWELL_OK, INKWELL_OK});
+  CHECK(results == std::array{INKWELL_OK, INKWELL_OK, INKWELL_OK, INKWELL_OK});
 
   board.control.usb(false);
   while (inkwell_get_pose(driver.arm, &pose) == INKWELL_OK) let_pass_ms(5);
   CHECK(allocations_of(loop) == 0);
-  CHECK(results == std::array{INKWELL_DISCONNECTED, INKWELL_DISCONNECTED, INKWELL_DISCONNECTED});
+  CHECK(results == std::array{INKWELL_DISCONNECTED, INKWELL_DISCONNECTED, INKWELL_DISCONNECTED, INKWELL_DISCONNECTED});
   CHECK(says("unplugged"));
   CHECK(state.is_referenced == 1);
 }
