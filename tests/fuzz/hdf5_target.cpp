@@ -176,13 +176,14 @@ const Registered recording_hdf5{"recording_hdf5",
                                   const recording::QuietHdf5 quiet;
                                   const Bytes file = file_of(Choices(input));
                                   refuse_or_take<device::Error>([&] {
-                                    const auto recording = recording::read_hdf5(file, "recording.h5");
+                                    const auto stored = recording::open_hdf5(file, "recording.h5");
+                                    const auto recording = stored.load(stored.quantities());
                                     for (const auto quantity : recording.quantities())
                                       if (recording.column(quantity).size() != recording.size())
                                         throw std::logic_error("a column is too short");
                                     if (recording.size() > 1000)
                                       throw std::logic_error("there are more samples than any file has");
-                                    recording::log_text(recording);
+                                    recording::log_text(stored);
                                   });
                                 },
                                 [] { return std::vector<Bytes>{Bytes(1)}; }};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ struct Range {
 };
 
 /// Returns true if each sample is drawn as one point. Samples of a black box need not be evenly spaced.
-bool has_point_each(const Recording& recording, Range shown) {
+bool has_point_each(const StoredRecording& recording, Range shown) {
   return recording.information.step_periods > 1 && shown.end - shown.begin <= points_maximum;
 }
 
@@ -54,57 +55,76 @@ std::vector<Quantity> held_by(const Overlay* over, const std::vector<Quantity>& 
   return held;
 }
 
+/// Reads the values in blocks, so that a long recording needs little memory.
+Band band_in(const StoredRecording& recording, std::size_t column, Range range) {
+  constexpr std::size_t block_samples = 16'384;
+  std::array<float, block_samples> block;
+  Band band{std::nan(""), std::nan(""), std::nan("")};
+  double sum = 0;
+  for (std::size_t begin = range.begin; begin < range.end; begin += block_samples) {
+    const std::span<float> values{block.data(), std::min(block_samples, range.end - begin)};
+    recording.read(column, begin, values);
+    const Band part = band_of(values.size(), [&](std::size_t i) { return static_cast<double>(values[i]); });
+    sum += part.mean * static_cast<double>(values.size());
+    band.minimum = std::fmin(band.minimum, part.minimum);
+    band.maximum = std::fmax(band.maximum, part.maximum);
+  }
+  if (range.begin < range.end) band.mean = sum / static_cast<double>(range.end - range.begin);
+  return band;
+}
+
+/// Appends a band for each range and quantity. Reads one column after the other, because a column is stored in chunks.
+void add_bands(FigureData& data, const StoredRecording& recording, const std::vector<Quantity>& quantities,
+               const std::vector<Range>& ranges) {
+  for (const auto quantity : quantities) {
+    const std::size_t column = recording.column_of(quantity);
+    for (std::size_t i = 0; i < ranges.size(); ++i) data.rows[i].bands.push_back(band_in(recording, column, ranges[i]));
+  }
+}
+
 /// Appends the bands of the overlaid recording for the same time ranges.
 void add_over(FigureData& data, const Overlay& over, const std::vector<Quantity>& quantities) {
   if (data.rows.empty()) return;
-  const Recording& recording = over.recording();
+  const StoredRecording& recording = over.recording();
   const auto held = held_by(&over, quantities);
   for (const auto quantity : held) data.names.push_back(name_over(quantity));
   const double step_s =
       data.rows.size() < 2 ? 1.0 / protocol::servo_rate_Hz : data.rows[1].time_s - data.rows[0].time_s;
-  for (auto& row : data.rows) {
+  std::vector<Range> ranges;
+  for (const auto& row : data.rows) {
     const double start_s = row.time_s - 0.5 * step_s - over.begins_s();
     const std::size_t begin = recording.sample_at(start_s), end = recording.sample_at(start_s + step_s);
-    for (const auto quantity : held) {
-      const auto& column = recording.column(quantity);
-      row.bands.push_back(band_of(start_s + step_s <= 0 ? 0 : end - begin,
-                                  [&](std::size_t i) { return static_cast<double>(column[begin + i]); }));
-    }
+    ranges.push_back({begin, start_s + step_s <= 0 ? begin : end});
   }
+  add_bands(data, recording, held, ranges);
 }
 
-FigureData data_of(const Recording& recording, const std::vector<Quantity>& quantities, Range shown, double from_s,
-                   double to_s) {
+FigureData data_of(const StoredRecording& recording, const std::vector<Quantity>& quantities, Range shown,
+                   double from_s, double to_s) {
   FigureData data;
-  std::vector<const std::vector<float>*> columns;
-  for (const auto quantity : quantities) {
-    data.names.emplace_back(name_of(quantity));
-    columns.push_back(&recording.column(quantity));
-  }
+  for (const auto quantity : quantities) data.names.emplace_back(name_of(quantity));
   const std::size_t points = std::min(points_maximum, shown.end - shown.begin);
+  std::vector<Range> ranges;
   if (has_point_each(recording, shown)) {
     for (std::size_t i = shown.begin; i < shown.end; ++i) {
       data.rows.push_back({recording.elapsed_s(i), {}});
-      for (const auto* column : columns)
-        data.rows.back().bands.push_back(band_of(1, [&](std::size_t) { return static_cast<double>((*column)[i]); }));
+      ranges.push_back({i, i + 1});
     }
-    return data;
+  } else {
+    // If there are few samples, each sample is one point. The half period compensates for rounding errors.
+    const double half_period_s = 0.5 / protocol::servo_rate_Hz;
+    const double step_s = (to_s - from_s + 2 * half_period_s) / static_cast<double>(points);
+    std::size_t begin = shown.begin;
+    for (std::size_t point = 0; point < points; ++point) {
+      const double start_s = from_s - half_period_s + step_s * static_cast<double>(point);
+      const std::size_t end =
+          point + 1 == points ? shown.end : std::min(shown.end, recording.sample_at(start_s + step_s));
+      data.rows.push_back({start_s + 0.5 * step_s, {}});
+      ranges.push_back({begin, end});
+      begin = end;
+    }
   }
-  // If there are few samples, each sample is one point. The half period compensates for rounding errors.
-  const double half_period_s = 0.5 / protocol::servo_rate_Hz;
-  const double step_s = (to_s - from_s + 2 * half_period_s) / static_cast<double>(points);
-  std::size_t begin = shown.begin;
-  for (std::size_t point = 0; point < points; ++point) {
-    const double start_s = from_s - half_period_s + step_s * static_cast<double>(point);
-    const std::size_t end =
-        point + 1 == points ? shown.end : std::min(shown.end, recording.sample_at(start_s + step_s));
-    FigureData::Row row{start_s + 0.5 * step_s, {}};
-    for (const auto* column : columns)
-      row.bands.push_back(
-          band_of(end - begin, [&](std::size_t i) { return static_cast<double>((*column)[begin + i]); }));
-    data.rows.push_back(std::move(row));
-    begin = end;
-  }
+  add_bands(data, recording, quantities, ranges);
   return data;
 }
 
@@ -115,11 +135,11 @@ std::string minute_of(const std::string& utc) {
   return utc.substr(0, date_length) + " " + utc.substr(date_length + 1, minute_length - date_length - 1) + " UTC";
 }
 
-std::string title_of(const Recording& recording) {
+std::string title_of(const StoredRecording& recording) {
   return recording.name + (recording.information.simulation ? " (simulation)" : "");
 }
 
-std::vector<std::string> facts_of(const Recording& recording) {
+std::vector<std::string> facts_of(const StoredRecording& recording) {
   const auto& about = recording.information;
   std::vector<std::string> parts;
   if (!about.arm.empty()) parts.push_back(about.arm);
@@ -133,7 +153,7 @@ std::vector<std::string> facts_of(const Recording& recording) {
 }
 
 /// A separate line below the subtitle: the overlaid recording and its differences.
-std::string over_titles(const Recording& recording, const Overlay& over, int height) {
+std::string over_titles(const StoredRecording& recording, const Overlay& over, int height) {
   constexpr double over_pixels = 112.0;
   const auto known = facts_of(recording);
   std::string text = fmt::format("broken lines: {}, from {:.3f} s on", title_of(over.recording()), over.begins_s());
@@ -144,14 +164,14 @@ std::string over_titles(const Recording& recording, const Overlay& over, int hei
 }
 
 /// Legend entries for the recordings with solid and with broken lines.
-std::string line_kinds(const Recording& recording, const Overlay& over) {
+std::string line_kinds(const StoredRecording& recording, const Overlay& over) {
   return fmt::format(
       ", \\\n     NaN with lines linewidth 2 linecolor rgb ink title {}, \\\n"
       "     NaN with lines linewidth 2 linecolor rgb ink {} title {}",
       gnuplot_text(recording.name), broken, gnuplot_text(over.recording().name));
 }
 
-std::string time_label(const Recording& recording, double shown_s) {
+std::string time_label(const StoredRecording& recording, double shown_s) {
   if (shown_s * protocol::servo_rate_Hz <= static_cast<double>(points_maximum * recording.information.step_periods))
     return "time  /  s";
   return fmt::format("time  /  s          line: mean of {:.2g} ms, band: its extremes", 1e3 * shown_s / points_maximum);
@@ -159,7 +179,7 @@ std::string time_label(const Recording& recording, double shown_s) {
 
 /// Dashed lines through all panes. The texts of the lines are in the first pane only, at staggered heights to avoid
 /// overlap.
-std::string marks(const Recording& recording, double from_s, double to_s, bool with_text) {
+std::string marks(const StoredRecording& recording, double from_s, double to_s, bool with_text) {
   std::string text;
   int number = 12;  // gnuplot label number, above the numbers of the title and axis labels
   for (const auto& mark : recording.marks) {
@@ -180,7 +200,7 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
 }
 
 /// Right edge of the panes.
-double right_edge(const Recording& recording, const Overlay* over, const std::vector<FigurePane>& panes) {
+double right_edge(const StoredRecording& recording, const Overlay* over, const std::vector<FigurePane>& panes) {
   std::size_t longest = over == nullptr ? 0 : std::max(recording.name.size(), over->recording().name.size());
   for (const auto& pane : panes)
     for (const auto quantity : pane.quantities) longest = std::max(longest, name_of(quantity).size());
@@ -210,7 +230,7 @@ std::string tics_of(const FigurePane& pane, const FigureData& data) {
   return fmt::format("set ytics {:g}\n", step);
 }
 
-std::string script(const Recording& recording, const Overlay* over, const std::vector<FigurePane>& panes,
+std::string script(const StoredRecording& recording, const Overlay* over, const std::vector<FigurePane>& panes,
                    const FigureData& data, double from_s, double to_s) {
   const auto count = static_cast<int>(panes.size());
   const int titles = titles_pixels + (over == nullptr ? 0 : over_titles_pixels);
@@ -295,7 +315,7 @@ std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities) {
   return panes;
 }
 
-void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture) {
+void draw_figure(const StoredRecording& recording, const FigureOptions& options, const std::filesystem::path& picture) {
   if (recording.size() == 0) throw device::Error("The recording contains no samples, so there is nothing to draw.");
   const auto quantities = options.quantities.empty() ? recording.quantities() : options.quantities;
   const double end_s = recording.duration_s();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/client/recording/overlay.hpp"
-#include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 
 namespace inkwell::recording {
 
@@ -28,6 +28,6 @@ std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities);
 
 /// Draws a PNG with gnuplot. Throws device::Error with a sentence if a quantity was not recorded, or the time range
 /// contains no samples. Throws device::Error if the picture cannot be written or if gnuplot fails.
-void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture);
+void draw_figure(const StoredRecording& recording, const FigureOptions& options, const std::filesystem::path& picture);
 
 }  // namespace inkwell::recording

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "host/client/recording/writer.hpp"
 
 namespace inkwell::recording {
@@ -32,9 +33,9 @@ std::uint32_t step_periods_of(double written);
 /// `name`: the file's name in error sentences. The name can differ from the path during writing.
 std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information,
                                     const std::string& name);
-Recording read_hdf5(const std::filesystem::path& file);
-/// Reads the content of a file. `name`: the file's name in error sentences.
-Recording read_hdf5(std::span<const std::byte> content, const std::string& name);
+StoredRecording open_hdf5(const std::filesystem::path& file);
+/// Opens the content of a file. `name`: the file's name in error sentences.
+StoredRecording open_hdf5(std::span<const std::byte> content, const std::string& name);
 
 std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information,
                                    const std::string& name);

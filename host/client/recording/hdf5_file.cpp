@@ -33,6 +33,17 @@ Handle file_access() {
   return list;
 }
 
+void keep_metadata(const Handle& access) {
+  H5AC_cache_config_t cache{};
+  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  H5Pget_mdc_config(access.id(), &cache);
+  cache.evictions_enabled = false;
+  cache.incr_mode = H5C_incr__off;
+  cache.flash_incr_mode = H5C_flash_incr__off;
+  cache.decr_mode = H5C_decr__off;
+  H5Pset_mdc_config(access.id(), &cache);
+}
+
 Handle text_type(std::size_t bytes) {
   Handle type = byte_text_type(bytes);
   H5Tset_cset(type.id(), H5T_CSET_UTF8);

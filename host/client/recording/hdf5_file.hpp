@@ -53,6 +53,9 @@ class QuietHdf5 {
 /// recording.
 Handle file_access();
 
+/// Disables all early writes and evictions of the metadata cache, which has up to some megabytes.
+void keep_metadata(const Handle& access);
+
 /// Fixed-length UTF-8 text.
 Handle text_type(std::size_t bytes);
 /// Fixed-length text without the UTF-8 mark. Some programs, such as Octave's `load`, refuse a file with UTF-8 text.

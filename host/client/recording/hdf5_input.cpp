@@ -36,20 +36,21 @@ bool is_text(hid_t type, std::size_t bytes_maximum) {
   return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Tget_size(type) <= bytes_maximum;
 }
 
+/// A writer may extend the file while it is read. The index of the chunks therefore stays in memory once it was read.
+Handle read_access() {
+  Handle list = file_access();
+  keep_metadata(list);
+  return list;
+}
+
 std::string text_before_zero(std::string_view bytes) { return std::string(bytes.substr(0, bytes.find('\0'))); }
 
 }  // namespace
 
-struct Hdf5Input::Dataset {
-  std::string path;
-  Handle itself, type, space;
-  bool is_compressed;
-};
-
 Hdf5Input::Hdf5Input(const std::filesystem::path& file) : name_(file.string()) {
   // A file of an earlier version can still be marked as open if its writer did not close the file. Readers in HDF5's
   // single-writer mode may open the file regardless.
-  const Handle access = file_access();
+  const Handle access = read_access();
   for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ})
     if (!file_) file_ = Handle(H5Fopen(name_.c_str(), mode, access.id()), H5Fclose);
   if (!file_) fail("is damaged, or is being written: HDF5 cannot open it. Try again after the recording has finished");
@@ -145,8 +146,11 @@ std::vector<std::string> Hdf5Input::names_in(const std::string& group_path) cons
 /// Refuses values in external files, values that need a filter plug-in, and values of unlimited decompressed size.
 Hdf5Input::Dataset Hdf5Input::open(const std::string& path) const {
   check_is_here(path);
-  Dataset dataset{
-      .path = path, .itself = {H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose}, .is_compressed = false};
+  Dataset dataset{.path = path,
+                  .itself = {H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose},
+                  .type = {},
+                  .space = {},
+                  .is_compressed = false};
   const Handle about(H5Dget_create_plist(dataset.itself.id()), H5Pclose);
   if (!about) fail(fmt::format("is damaged: {} cannot be read", path));
   const auto layout = H5Pget_layout(about.id());
@@ -228,30 +232,42 @@ void Hdf5Input::check_content(const Dataset& column, std::uint64_t count) {
   bytes_left_ -= stored;
 }
 
-void Hdf5Input::read_column(const Dataset& column, hid_t type, std::uint64_t count, void* values) const {
+void Hdf5Input::read_column(const Dataset& column, hid_t type, std::uint64_t begin, std::uint64_t count,
+                            void* values) const {
   if (count == 0) return;
-  const hsize_t from = 0, size = count;
+  const hsize_t from = begin, size = count;
   const Handle memory(H5Screate_simple(1, &size, nullptr), H5Sclose);
   if (H5Sselect_hyperslab(column.space.id(), H5S_SELECT_SET, &from, nullptr, &size, nullptr) < 0 ||
       H5Dread(column.itself.id(), type, memory.id(), column.space.id(), H5P_DEFAULT, values) < 0)
     fail(fmt::format("is damaged: {} cannot be read", column.path));
 }
 
-std::vector<std::int64_t> Hdf5Input::whole_numbers(const std::string& path, std::uint64_t count) {
-  const Dataset column = open_column(path);
+Hdf5Input::Dataset Hdf5Input::whole_number_column(const std::string& path, std::uint64_t count) {
+  Dataset column = open_column(path);
   if (!is_whole_number(column.type.id())) fail(fmt::format("is damaged: {} must be whole numbers", path));
   check_content(column, count);
-  std::vector<std::int64_t> numbers(count);
-  read_column(column, H5T_NATIVE_INT64, count, numbers.data());
-  return numbers;
+  return column;
 }
 
-std::vector<float> Hdf5Input::real_numbers(const std::string& path, std::uint64_t count) {
-  const Dataset column = open_column(path);
+Hdf5Input::Dataset Hdf5Input::real_number_column(const std::string& path, std::uint64_t count) {
+  Dataset column = open_column(path);
   if (!is_real_number(column.type.id())) fail(fmt::format("is damaged: {} must be real numbers", path));
   check_content(column, count);
-  std::vector<float> numbers(count);
-  read_column(column, H5T_NATIVE_FLOAT, count, numbers.data());
+  return column;
+}
+
+void Hdf5Input::read(const Dataset& column, std::uint64_t begin, std::span<std::int64_t> numbers) const {
+  read_column(column, H5T_NATIVE_INT64, begin, numbers.size(), numbers.data());
+}
+
+void Hdf5Input::read(const Dataset& column, std::uint64_t begin, std::span<float> numbers) const {
+  read_column(column, H5T_NATIVE_FLOAT, begin, numbers.size(), numbers.data());
+}
+
+std::vector<std::int64_t> Hdf5Input::whole_numbers(const std::string& path, std::uint64_t count) {
+  const Dataset column = whole_number_column(path, count);
+  std::vector<std::int64_t> numbers(count);
+  read(column, 0, numbers);
   return numbers;
 }
 
@@ -262,7 +278,7 @@ std::vector<std::string> Hdf5Input::texts(const std::string& path, std::uint64_t
   check_content(column, count);
   const std::size_t bytes = H5Tget_size(column.type.id());
   std::vector<char> buffer(count * bytes);
-  read_column(column, column.type.id(), count, buffer.data());
+  read_column(column, column.type.id(), 0, count, buffer.data());
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < count; ++i) texts.push_back(text_before_zero({buffer.data() + i * bytes, bytes}));
   return texts;

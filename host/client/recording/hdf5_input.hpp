@@ -17,6 +17,13 @@ namespace inkwell::recording {
 /// Every function throws device::Error if the file is damaged. The caller must own a QuietHdf5.
 class Hdf5Input {
  public:
+  /// An open dataset that was checked.
+  struct Dataset {
+    std::string path;
+    Handle itself, type, space;
+    bool is_compressed = false;
+  };
+
   explicit Hdf5Input(const std::filesystem::path& file);
   /// Reads the content of a file from memory. `name` is the file's name in error sentences.
   Hdf5Input(std::span<const std::byte> content, std::string name);
@@ -38,16 +45,19 @@ class Hdf5Input {
 
   /// Declared number of elements in a column.
   std::uint64_t length_of(const std::string& column) const;
+  /// Opens a column of at least `count` numbers, so that parts of the column can be read.
+  Dataset whole_number_column(const std::string& column, std::uint64_t count);
+  Dataset real_number_column(const std::string& column, std::uint64_t count);
+  /// Reads numbers from the element `begin` on.
+  void read(const Dataset& column, std::uint64_t begin, std::span<std::int64_t> numbers) const;
+  void read(const Dataset& column, std::uint64_t begin, std::span<float> numbers) const;
   /// Returns the first `count` elements of a column.
   std::vector<std::int64_t> whole_numbers(const std::string& column, std::uint64_t count);
-  std::vector<float> real_numbers(const std::string& column, std::uint64_t count);
   std::vector<std::string> texts(const std::string& column, std::uint64_t count);
 
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  struct Dataset;
-
   void check_is_here(const std::string& path) const;
   void check_one_element(hid_t space, const std::string& path) const;
   Handle open_attribute(const char* name) const;
@@ -55,7 +65,7 @@ class Hdf5Input {
   Dataset open_column(const std::string& path) const;
   void check_content(const Dataset& column, std::uint64_t count);
   void read_scalar(const Dataset& dataset, hid_t type, void* value) const;
-  void read_column(const Dataset& column, hid_t type, std::uint64_t count, void* values) const;
+  void read_column(const Dataset& column, hid_t type, std::uint64_t begin, std::uint64_t count, void* values) const;
 
   std::string name_;
   Handle file_;

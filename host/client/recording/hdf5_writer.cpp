@@ -93,16 +93,7 @@ class Hdf5Writer final : public Writer {
   static Handle access() {
     Handle list = file_access();
     H5Pset_libver_bounds(list.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
-    // HDF5 may write parts of its metadata cache at any time. The settings below prevent early writes of a cache of up
-    // to some megabytes.
-    H5AC_cache_config_t cache{};
-    cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-    H5Pget_mdc_config(list.id(), &cache);
-    cache.evictions_enabled = false;
-    cache.incr_mode = H5C_incr__off;
-    cache.flash_incr_mode = H5C_flash_incr__off;
-    cache.decr_mode = H5C_decr__off;
-    H5Pset_mdc_config(list.id(), &cache);
+    keep_metadata(list);                  // otherwise HDF5 may write parts of its index at any time
     H5Pset_cache(list.id(), 0, 0, 0, 0);  // chunks are written completely, so no chunk waits in a cache
     return list;
   }

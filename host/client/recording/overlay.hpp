@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 
 namespace inkwell::recording {
 
@@ -17,16 +17,16 @@ class Overlay {
  public:
   /// Aligns both recordings at the first mark with this text. If the text is empty, aligns the starts of the
   /// recordings. Throws device::Error with a sentence if a recording has no such mark, or no samples.
-  Overlay(Recording over, const Recording& base, std::string_view mark = {});
+  Overlay(StoredRecording over, const StoredRecording& base, std::string_view mark = {});
 
-  const Recording& recording() const { return over_; }
+  const StoredRecording& recording() const { return over_; }
   /// Start of the overlaid recording, relative to the first sample of the base.
   double begins_s() const { return static_cast<double>(shift_periods_) / protocol::servo_rate_Hz; }
   /// Returns the values at the control periods of the base recording. Missing values are NaN.
   device::ScopeSamples compared_with(const device::ScopeSamples& of_base) const;
 
  private:
-  Recording over_;
+  StoredRecording over_;
   std::int64_t base_begins_periods_;  ///< first control period of the base
   std::int64_t shift_periods_ = 0;    ///< start of the overlaid recording, in periods of the base
 };
@@ -36,6 +36,6 @@ std::pair<std::string, std::string> distinct_names(const std::filesystem::path& 
                                                    const std::filesystem::path& other);
 
 /// Returns the mark texts that both recordings contain, without duplicates. Common marks can align the recordings.
-std::vector<std::string> common_marks(const Recording& a, const Recording& b);
+std::vector<std::string> common_marks(const StoredRecording& a, const StoredRecording& b);
 
 }  // namespace inkwell::recording

@@ -84,18 +84,6 @@ device::ScopeSamples Recording::samples(std::size_t begin, std::size_t end) cons
   return samples;
 }
 
-device::ScopeSamples Recording::held_sample(std::size_t sample) const {
-  const bool is_last = sample + 1 == size();
-  device::ScopeSamples held = samples(sample, sample + 1);
-  if (!is_last)
-    held.count = static_cast<std::size_t>(
-        std::min<std::int64_t>(information.step_periods, periods[sample + 1] - periods[sample]));
-  if (sample > 0) held.lost_before -= std::min<std::uint64_t>(held.lost_before, information.step_periods - 1);
-  const std::vector<float> values = held.values;
-  for (std::size_t i = 1; i < held.count; ++i) held.values.insert(held.values.end(), values.begin(), values.end());
-  return held;
-}
-
 void Recording::append(const device::ScopeSamples& samples) {
   for (std::size_t i = 0; i < samples.count; ++i) {
     periods.push_back(samples.first_period + static_cast<std::int64_t>(i));
@@ -128,14 +116,14 @@ std::uint32_t step_periods_of(double written) {
 
 namespace {
 
-Recording read_either(const std::filesystem::path& file) {
+StoredRecording open_either(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     throw device::Error(fmt::format("{} cannot be read. Give the name of a recording that exists.", file.string()));
   std::array<char, 8> start{};
   stream.read(start.data(), start.size());
   constexpr std::array hdf5_signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  if (start == hdf5_signature) return read_hdf5(file);
+  if (start == hdf5_signature) return open_hdf5(file);
   if (local::without_byte_order_mark({start.data(), start.size()}).starts_with('#')) {
     stream.clear();  // clears the end-of-file state of a shorter file
     stream.seekg(0);
@@ -146,7 +134,7 @@ Recording read_either(const std::filesystem::path& file) {
 }
 
 /// Converts all texts of the file to plain text, which is safe to print, draw and copy.
-void make_plain(Recording& recording) {
+void make_plain(StoredRecording& recording) {
   auto& about = recording.information;
   for (std::string* text : {&about.created_utc, &about.firmware_version, &about.serial_number, &about.arm})
     *text = protocol::plain_text(*text);
@@ -157,34 +145,36 @@ void make_plain(Recording& recording) {
   for (std::string& remark : recording.remarks) remark = protocol::plain_text(remark);
 }
 
-}  // namespace
-
-std::string log_text(const Recording& recording) {
-  std::string text;
-  for (const Mark& mark : recording.marks)
-    text += device::log_line(
-        mark.clock_utc, recording.periods.empty() ? std::nullopt : std::optional(recording.elapsed_s_at(mark.period)),
-        mark.kind, mark.text);
-  return text;
-}
-
-Recording read(const std::filesystem::path& file) {
-  Recording recording;
+template <class Action>
+auto no_memory_is_an_error(const std::filesystem::path& file, Action action) {
   try {
-    recording = read_either(file);
+    return action();
   } catch (const std::bad_alloc&) {
     throw device::Error(
         fmt::format("{} needs more memory than is free on this computer. Close other programs, or read the recording "
                     "on another computer.",
                     file.string()));
   }
+}
+
+}  // namespace
+
+StoredRecording StoredRecording::open(const std::filesystem::path& file) {
+  StoredRecording recording = no_memory_is_an_error(file, [&] { return open_either(file); });
+  if (recording.size() > 0)
+    for (Mark& mark : recording.marks) mark.period = period_after(recording.first_period(), mark.period);
   make_plain(recording);
-  if (!recording.periods.empty())
-    for (Mark& mark : recording.marks) mark.period = period_after(recording.periods.front(), mark.period);
   // Sorts the marks by time, because events of the device arrive later than notes of the user.
   std::ranges::stable_sort(recording.marks, {}, &Mark::period);
   recording.name = protocol::plain_text(file.stem().string());
   return recording;
+}
+
+Recording read(const std::filesystem::path& file) {
+  return no_memory_is_an_error(file, [&] {
+    const auto stored = StoredRecording::open(file);
+    return stored.load(stored.quantities());
+  });
 }
 
 namespace {

@@ -57,16 +57,11 @@ struct Recording {
   std::size_t end_of_stretch(std::size_t begin, std::size_t end) const;
   /// Samples of a range in the format of the scope. Missing periods before the range count as lost.
   device::ScopeSamples samples(std::size_t begin, std::size_t end) const;
-  /// One sample in the format of the scope, repeated until the next sample.
-  device::ScopeSamples held_sample(std::size_t sample) const;
   /// Adds samples of information.signals to a recording without simulated columns.
   void append(const device::ScopeSamples& samples);
   /// Deletes the samples before `begin`, the sample at `end` and all later samples.
   void keep(std::size_t begin, std::size_t end);
 };
-
-/// One line per mark: clock, time since the first sample, kind, text.
-std::string log_text(const Recording& recording);
 
 /// Reads an HDF5 or CSV recording; its content determines the format. An incomplete file is read up to its last
 /// complete sample. Throws device::Error with a sentence if the file is missing, damaged or not a recording.

@@ -14,7 +14,7 @@ constexpr double half_period_s = 0.5 / protocol::servo_rate_Hz;
 
 }  // namespace
 
-Replay::Replay(Recording recording) : recording_(std::move(recording)) {
+Replay::Replay(StoredRecording recording) : recording_(std::move(recording)) {
   if (recording_.size() == 0) throw device::Error("The recording contains no samples, so there is nothing to replay.");
   for (std::size_t i = 0; i < recording_.information.signals.size(); ++i)
     columns_[static_cast<std::size_t>(recording_.information.signals[i])] = i;
@@ -64,10 +64,10 @@ std::optional<device::Pose> Replay::pose() const {
   const std::size_t present = present_sample();
   const auto value = [&](Signal signal) {
     const auto column = column_of(signal);
-    return column ? recording_.columns[*column][present] : 0.0f;
+    return column ? recording_.value(*column, present) : 0.0f;
   };
   device::Pose pose{};
-  pose.time_periods = recording_.periods[present];
+  pose.time_periods = recording_.period(present);
   pose.sequence = pose.time_periods / (protocol::servo_rate_Hz / protocol::pose_rate_Hz);
   const auto vector = [&](float(&to)[3], protocol::EachAxis<Signal> rows) {
     for (std::size_t i = 0; i < 3; ++i) to[i] = value(rows[i]);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/client/device/scope_decoder.hpp"
-#include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "protocol/reports.hpp"
 
 namespace inkwell::recording {
@@ -19,9 +19,9 @@ class Replay {
   static constexpr double speed_minimum = 0.01, speed_maximum = 16;
 
   /// Throws device::Error if the recording has no samples. The replay is initially paused at the start.
-  explicit Replay(Recording recording);
+  explicit Replay(StoredRecording recording);
 
-  const Recording& recording() const { return recording_; }
+  const StoredRecording& recording() const { return recording_; }
   double duration_s() const { return recording_.duration_s(); }
   double position_s() const { return position_s_; }
   double speed() const { return speed_; }
@@ -51,7 +51,7 @@ class Replay {
   std::optional<std::size_t> column_of(protocol::Signal signal) const;
   std::size_t present_sample() const;  ///< the newest sample at or before the position
 
-  Recording recording_;
+  StoredRecording recording_;
   std::array<std::optional<std::size_t>, protocol::signal_count + protocol::force_law_signals_maximum> columns_;
   double position_s_ = 0;
   double speed_ = 1;

@@ -36,20 +36,21 @@ void print_pictures(const DeviceOptions& options, const std::vector<std::string>
     for (const auto& picture : pictures) fmt::print("The figure is in {}.\n", picture);
 }
 
-std::vector<std::string> draw_as_in_paper(const recording::Recording& recording, const PlotOptions& options) {
+std::vector<std::string> draw_as_in_paper(const recording::StoredRecording& recording, const PlotOptions& options) {
   const auto folder = options.output.empty() ? std::filesystem::path(options.file).parent_path()
                                              : std::filesystem::path(options.output);
-  return experiment::draw_figures(recording, folder, {.wall = {}, .from_s = options.from_s, .to_s = options.to_s});
+  return experiment::draw_figures(recording.load(experiment::figure_quantities()), folder,
+                                  {.wall = {}, .from_s = options.from_s, .to_s = options.to_s});
 }
 
-std::string draw(recording::Recording recording, const PlotOptions& options) {
+std::string draw(recording::StoredRecording recording, const PlotOptions& options) {
   if (!options.output.empty() && !local::has_extension(options.output, ".png"))
     throw UsageError(
         fmt::format("{} does not end in .png. Figures are PNG files; give a name that ends in .png.", options.output));
   recording::FigureOptions figure{.quantities = {}, .from_s = options.from_s.value_or(0), .to_s = options.to_s};
   std::optional<recording::Overlay> over;
   if (!options.over.empty()) {
-    auto other = read_recording(options.over);
+    auto other = open_recording(options.over);
     std::tie(recording.name, other.name) = recording::distinct_names(options.file, options.over);
     over.emplace(std::move(other), recording, options.align);
   }
@@ -66,7 +67,7 @@ std::string draw(recording::Recording recording, const PlotOptions& options) {
 }
 
 int plot(const DeviceOptions& device_options, const PlotOptions& options) {
-  auto recording = read_recording(options.file);
+  auto recording = open_recording(options.file);
   if (options.as_in_paper)
     print_pictures(device_options, draw_as_in_paper(recording, options));
   else

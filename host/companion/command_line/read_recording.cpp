@@ -8,8 +8,8 @@
 
 namespace inkwell::command_line {
 
-recording::Recording read_recording(const std::string& file) {
-  auto recording = recording::read(file);
+recording::StoredRecording open_recording(const std::string& file) {
+  auto recording = recording::StoredRecording::open(file);
   for (const auto& remark : recording.remarks) local::print_error("inkwell: {}\n", remark);
   return recording;
 }

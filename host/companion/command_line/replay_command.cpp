@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/client/command_line/help.hpp"
-#include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 
 #include "host/companion/command_line/read_recording.hpp"
 
@@ -14,9 +14,9 @@ namespace inkwell::command_line {
 namespace {
 
 using nlohmann::ordered_json;
-using recording::Recording;
+using recording::StoredRecording;
 
-ordered_json to_json(const Recording& recording) {
+ordered_json to_json(const StoredRecording& recording) {
   const auto& about = recording.information;
   ordered_json signals = ordered_json::array(), simulated = ordered_json::array(), marks = ordered_json::array(),
                parameters = ordered_json::object();
@@ -54,7 +54,7 @@ void print_names(const char* what, const std::vector<Value>& values) {
   fmt::print("{:<20}{}\n", fmt::format("{} {}", names.size(), what), fmt::join(names, ", "));
 }
 
-void print(const Recording& recording) {
+void print(const StoredRecording& recording) {
   const auto& about = recording.information;
   fmt::print("recorded            {}{}\n", about.created_utc, about.simulation ? ", from a simulation" : "");
   fmt::print("device              {}, firmware {}, protocol {}\n", about.serial_number, about.firmware_version,
@@ -73,7 +73,7 @@ void print(const Recording& recording) {
 }
 
 int describe(const DeviceOptions& options, const std::string& file) {
-  const auto recording = read_recording(file);
+  const auto recording = open_recording(file);
   if (options.json)
     fmt::print("{}\n", to_json(recording).dump(2));
   else
@@ -82,7 +82,7 @@ int describe(const DeviceOptions& options, const std::string& file) {
 }
 
 int print_log(const std::string& file) {
-  fmt::print("{}", recording::log_text(read_recording(file)));
+  fmt::print("{}", recording::log_text(open_recording(file)));
   return 0;
 }
 

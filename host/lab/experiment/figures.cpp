@@ -111,6 +111,14 @@ std::string script(const recording::Information& about, const FigureData& data, 
 
 }  // namespace
 
+std::vector<recording::Quantity> figure_quantities() {
+  std::vector<recording::Quantity> needed{Signal::force_N};
+  for (const protocol::EachAxis<Signal> rows : std::initializer_list<protocol::EachAxis<Signal>>{
+           Signal::penetration_x_m, Signal::position_x_m, Signal::torque_1_Nm, Signal::duty_1})
+    for (int axis = 0; axis < 3; ++axis) needed.emplace_back(of_axis(rows, axis));
+  return needed;
+}
+
 FigureData figure_data(const Recording& recording, BoxWall wall) {
   const auto shown = shown_quantities(recording.information.parameters, wall);
   FigureData data;

@@ -15,6 +15,9 @@ namespace inkwell::experiment {
 /// Returns the mean, smallest and largest value of each quantity in each millisecond.
 recording::FigureData figure_data(const recording::Recording& recording, BoxWall wall);
 
+/// Signals that draw_figures() needs.
+std::vector<recording::Quantity> figure_quantities();
+
 struct PaperFigureOptions {
   std::optional<BoxWall> wall;   ///< std::nullopt: the wall with the deepest penetration
   std::optional<double> from_s;  ///< since the first sample; std::nullopt: shortly before the contact

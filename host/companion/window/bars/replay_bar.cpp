@@ -26,7 +26,7 @@ std::string speed_label(double speed) { return fmt::format("{:g} x", speed); }
 }  // namespace
 
 void ReplayBar::open(const std::filesystem::path& file) {
-  replay_.emplace(recording::read(file));
+  replay_.emplace(recording::StoredRecording::open(file));
   replay_->play();
   file_ = file;
   name_ = replay_->recording().name;
@@ -37,7 +37,7 @@ void ReplayBar::open(const std::filesystem::path& file) {
 }
 
 void ReplayBar::lay_over(const std::filesystem::path& file, const std::string& mark) {
-  recording::Recording over = recording::read(file);
+  recording::StoredRecording over = recording::StoredRecording::open(file);
   std::string name;
   std::tie(name, over.name) = recording::distinct_names(file_, file);
   over_.emplace(std::move(over), replay_->recording(), mark);
@@ -47,7 +47,7 @@ void ReplayBar::lay_over(const std::filesystem::path& file, const std::string& m
 }
 
 void ReplayBar::align_at(const std::string& mark) {
-  over_.emplace(recording::Recording(over_->recording()), replay_->recording(), mark);
+  over_.emplace(recording::StoredRecording(over_->recording()), replay_->recording(), mark);
   aligned_at_ = mark;
   replay_->seek(replay_->position_s());
 }
@@ -58,16 +58,31 @@ void ReplayBar::follow(double now_s, ScopePane& scope) {
   if (!replay_) return;
   editor_.take_changes();
   editor_.forget_unconfirmed(now_s);
-  const auto passed = replay_->advance(passed_s, scope.span_s());
-  if (passed.is_restart) scope.restart();
-  for (const auto& block : passed.blocks) {
-    if (over_) {
-      const device::ScopeSamples compared = over_->compared_with(block);
-      scope.receive(block, &compared);
-    } else {
-      scope.receive(block);
+  try {
+    const auto passed = replay_->advance(passed_s, scope.span_s());
+    if (passed.is_restart) scope.restart();
+    for (const auto& block : passed.blocks) {
+      if (over_) {
+        const device::ScopeSamples compared = over_->compared_with(block);
+        scope.receive(block, &compared);
+      } else {
+        scope.receive(block);
+      }
     }
+  } catch (const device::Error& error) {
+    stop_at(error);
   }
+}
+
+std::optional<device::Pose> ReplayBar::pose() try { return replay_->pose(); } catch (const device::Error& error) {
+  stop_at(error);
+  return std::nullopt;
+}
+
+/// The samples are read during the replay, so damage in the middle of a file is found late.
+void ReplayBar::stop_at(const device::Error& error) {
+  replay_->pause();
+  problem_ = error.what();
 }
 
 void ReplayBar::draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& scope) {

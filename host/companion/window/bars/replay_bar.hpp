@@ -25,7 +25,7 @@ class ReplayBar {
   void lay_over(const std::filesystem::path& file, const std::string& mark);
   bool is_open() const { return replay_.has_value(); }
   /// Returns null if no recording is open.
-  const recording::Recording* recording() const { return replay_ ? &replay_->recording() : nullptr; }
+  const recording::StoredRecording* recording() const { return replay_ ? &replay_->recording() : nullptr; }
   void seek(double position_s) {
     if (replay_) replay_->seek(position_s);
   }
@@ -33,7 +33,7 @@ class ReplayBar {
 
   /// Call once per frame. Passes the samples since the last call to the scope.
   void follow(double now_s, ScopePane& scope);
-  std::optional<device::Pose> pose() const { return replay_->pose(); }
+  std::optional<device::Pose> pose();
   /// Returns an editor for the recorded parameters. The edits are not sent to any device.
   ParameterEditor& editor() { return editor_; }
   const ParameterEditor& editor() const { return editor_; }
@@ -42,6 +42,7 @@ class ReplayBar {
   void draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& scope);
 
  private:
+  void stop_at(const device::Error& error);
   void draw_controls(const Style& style);
   void draw_over(const Style& style);
   void align_at(const std::string& mark);
@@ -53,7 +54,7 @@ class ReplayBar {
   std::optional<recording::Overlay> over_;
   std::string aligned_at_;  ///< text of the mark that aligns the recordings; empty: aligned at their starts
   FileChooser chooser_;
-  std::string problem_;  ///< error of the last overlay; empty: no error
+  std::string problem_;  ///< error of the last overlay or of a damaged file; empty: no error
   ParameterEditor editor_;
   std::optional<double> followed_until_s_;
 };

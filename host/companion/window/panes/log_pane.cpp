@@ -57,7 +57,7 @@ class LogPane final : public Pane {
   std::string as_text() const;
 
   DeviceDesk& desk_;
-  std::function<const recording::Recording*()> replayed_;
+  std::function<const recording::StoredRecording*()> replayed_;
   std::function<void(double)> seek_;
   int shown_ = 0;  ///< index into shown_kinds
   FileChooser chooser_;
@@ -100,7 +100,7 @@ void LogPane::draw_rows(const Style& style) {
     is_empty = false;
     draw_row(row, style);
   };
-  if (const recording::Recording* recording = replayed_()) {
+  if (const recording::StoredRecording* recording = replayed_()) {
     for (const recording::Mark& mark : recording->marks)  // in chronological order
       draw({mark.kind, mark.text, mark.clock_utc, recording->elapsed_s_at(mark.period)});
   } else {
@@ -142,7 +142,7 @@ void LogPane::draw_row(const LogRow& row, const Style& style) {
 }
 
 std::string LogPane::as_text() const {
-  if (const recording::Recording* recording = replayed_()) return recording::log_text(*recording);
+  if (const recording::StoredRecording* recording = replayed_()) return recording::log_text(*recording);
   std::string text;
   const device::EventLog& events = desk_.events();
   for (std::uint64_t number = events.begin(); number < events.end(); ++number) text += device::line_of(events[number]);

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "host/client/device/device.hpp"
-#include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "host/companion/window/device_desk/device_desk.hpp"
 #include "host/companion/window/device_desk/parameter_editor.hpp"
 #include "host/companion/window/frame/style.hpp"
@@ -43,7 +43,7 @@ struct PaneSurroundings {
   std::function<void(const std::filesystem::path&)> replay;
   bool starts_with_replay = false;
   /// Returns the replayed recording; null if no recording is open.
-  std::function<const recording::Recording*()> replayed;
+  std::function<const recording::StoredRecording*()> replayed;
   /// Moves the replay to a time in seconds after the first sample.
   std::function<void(double)> seek;
 };

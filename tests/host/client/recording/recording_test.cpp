@@ -18,6 +18,7 @@
 
 #include "host/client/recording/recorder.hpp"
 #include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "host/client/recording/writer.hpp"
 
 #include "tests/failure.hpp"
