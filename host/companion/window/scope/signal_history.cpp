@@ -86,6 +86,35 @@ void SignalLane::restart(std::vector<protocol::Signal> signals, std::uint64_t fi
   derive(std::exchange(formulas_, {}));
 }
 
+void SignalLane::select(const std::vector<protocol::Signal>& signals) {
+  const std::uint64_t next = end();
+  std::vector<SignalSeries> series;
+  for (const protocol::Signal signal : signals) {
+    const auto before = std::ranges::find(signals_, signal);
+    if (before == signals_.end())
+      series.emplace_back(capacity_, next);
+    else
+      series.push_back(std::move(series_[static_cast<std::size_t>(before - signals_.begin())]));
+  }
+  series_ = std::move(series);
+  signals_ = signals;
+  // Formulas with the same inputs retain their results and filters.
+  std::erase_if(derived_, [this](Derived& each) {
+    for (std::size_t i = 0; i < each.inputs.size(); ++i) {
+      const auto found = std::ranges::find(signals_, each.values.inputs()[i]);
+      if (found == signals_.end()) return true;
+      each.inputs[i] = static_cast<std::size_t>(found - signals_.begin());
+    }
+    return false;
+  });
+  derive(std::exchange(formulas_, {}));
+}
+
+std::uint64_t SignalLane::begin() const {
+  const auto oldest = std::ranges::min_element(series_, {}, &SignalSeries::begin);
+  return oldest == series_.end() ? 0 : oldest->begin();
+}
+
 void SignalLane::derive(const std::vector<ScopeSignal>& formulas) {
   if (formulas == formulas_) return;
   formulas_ = formulas;
@@ -152,15 +181,32 @@ void SignalHistory::derive(const std::vector<ScopeSignal>& formulas) {
   over_.derive(formulas);
 }
 
+std::optional<std::uint64_t> SignalHistory::gap_before(const device::ScopeSamples& samples) const {
+  std::uint64_t gap = samples.lost_before;
+  if (samples.signals != shown_.signals()) {
+    // The number of lost samples before the first samples of a selection is unknown.
+    const std::int64_t periods = samples.first_period - next_period_;
+    const bool is_continued = std::ranges::any_of(samples.signals, [this](protocol::Signal signal) {
+      return shown_.find(signal) != nullptr && shown_.find(signal)->end() > shown_.find(signal)->begin();
+    });
+    if (periods < 0 || !is_continued) return std::nullopt;
+    gap = static_cast<std::uint64_t>(periods);
+  }
+  return gap > capacity_ ? std::nullopt : std::optional(gap);
+}
+
 void SignalHistory::append(const device::ScopeSamples& samples, const device::ScopeSamples* over) {
   if (samples.count == 0) return;
-  if (samples.signals != shown_.signals() || samples.lost_before > capacity_) {
+  if (const auto gap = gap_before(samples)) {
+    // The gap belongs to the old selection. A signal without samples before the gap starts after the gap.
+    shown_.append_lost(*gap);
+    over_.append_lost(*gap);
+    if (samples.signals != shown_.signals()) shown_.select(samples.signals);
+  } else {
     shown_.restart(samples.signals, 0);
     over_.restart({}, 0);
-  } else {
-    shown_.append_lost(samples.lost_before);
-    over_.append_lost(samples.lost_before);
   }
+  next_period_ = samples.first_period + static_cast<std::int64_t>(samples.count);
   const std::vector<protocol::Signal> over_signals = over == nullptr ? std::vector<protocol::Signal>{} : over->signals;
   if (over_signals != over_.signals()) over_.restart(over_signals, shown_.end());
   shown_.append({samples.values.data(), samples.count * samples.signals.size()});

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,7 +34,10 @@ class SignalSeries {
 
   std::uint64_t end() const { return end_; }  ///< index of the next sample
   std::uint64_t begin() const { return std::max(first_, end_ > capacity_ ? end_ - capacity_ : 0); }
-  float operator[](std::uint64_t index) const { return samples_[index & (capacity_ - 1)]; }
+  /// Returns NaN for a sample before the first appended sample.
+  float operator[](std::uint64_t index) const {
+    return index < first_ ? std::numeric_limits<float>::quiet_NaN() : samples_[index & (capacity_ - 1)];
+  }
 
   /// Returns the extremes of the stored samples in [first, last).
   Extremes extremes(std::uint64_t first, std::uint64_t last) const;
@@ -58,13 +62,16 @@ class SignalLane {
   const std::vector<protocol::Signal>& signals() const { return signals_; }
   /// Clears the samples and sets new signals. The next sample has the index `first`.
   void restart(std::vector<protocol::Signal> signals, std::uint64_t first);
+  /// Sets new signals and retains the samples of the signals that are in both sets. The other signals start with the
+  /// next sample.
+  void select(const std::vector<protocol::Signal>& signals);
   /// Sets the formulas and computes their results for the stored samples.
   void derive(const std::vector<ScopeSignal>& formulas);
   /// Appends samples. `values` contains the values of all signals, period by period.
   void append(std::span<const float> values);
   void append_lost(std::uint64_t count);
 
-  std::uint64_t begin() const { return series_.empty() ? 0 : series_.front().begin(); }
+  std::uint64_t begin() const;
   std::uint64_t end() const { return series_.empty() ? 0 : series_.front().end(); }
   const SignalSeries* find(const ScopeSignal& signal) const;
 
@@ -87,14 +94,14 @@ class SignalLane {
   std::vector<float> inputs_;     ///< buffer for the inputs of a formula
 };
 
-/// History of the streamed signals and of an overlaid recording. Index 0 is the first control period after the signals
-/// were selected.
+/// History of the streamed signals and of an overlaid recording. Index 0 is the first received control period.
 class SignalHistory {
  public:
   explicit SignalHistory(std::size_t capacity = std::size_t{1} << 21)
       : capacity_(capacity), shown_(capacity), over_(capacity) {}
 
-  /// Appends samples. If the signals have changed, clears the history first. Stores lost samples as NaN. `over`
+  /// Appends samples. If the signals have changed, retains the samples of the signals that are still selected. Stores
+  /// lost samples as NaN. Clears the history if the board has restarted or if too many samples were lost. `over`
   /// contains the samples of the overlaid recording, or is null.
   void append(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   void clear();
@@ -107,8 +114,12 @@ class SignalHistory {
   const SignalSeries* find_over(const ScopeSignal& signal) const { return over_.find(signal); }
 
  private:
+  /// Returns the number of lost samples before `samples`, or an empty optional if the history must be cleared.
+  std::optional<std::uint64_t> gap_before(const device::ScopeSamples& samples) const;
+
   std::size_t capacity_;
   SignalLane shown_, over_;
+  std::int64_t next_period_ = 0;  ///< control period after the newest sample
 };
 
 /// Divides [first, last) into `columns` columns and returns the extremes of each column. The column widths are nearly

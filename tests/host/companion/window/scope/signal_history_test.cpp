@@ -89,7 +89,7 @@ TEST_CASE("columns before the first sample and after the last one are empty") {
   CHECK(std::isnan(columns[2].minimum));
 }
 
-TEST_CASE("the history marks lost samples and restarts after a change of the selection") {
+TEST_CASE("the history marks lost samples, and restarts after a change to other signals") {
   using protocol::Signal;
   window::SignalHistory history(1024);
   history.append(samples_of({Signal::force_N, Signal::duty_1}, 5000, 10, 2.0f));
@@ -103,7 +103,41 @@ TEST_CASE("the history marks lost samples and restarts after a change of the sel
   CHECK(std::isnan(force[13]));
   CHECK(force[14] == 3.0f);
 
-  history.append(samples_of({Signal::force_N}, 9000, 5, 1.0f));
+  history.append(samples_of({Signal::supply_V}, 9000, 5, 1.0f));
   CHECK(history.end() == 5);
   CHECK(history.find(Signal::duty_1) == nullptr);
+}
+
+TEST_CASE("a signal in both selections retains its samples, and a new signal has a gap before its first sample") {
+  using protocol::Signal;
+  window::SignalHistory history(1024);
+  const window::ScopeSignal doubled(window::Formula{"doubled_N", "2 * force_N", "N"});
+  history.derive({doubled});
+  history.append(samples_of({Signal::force_N, Signal::duty_1}, 5000, 100, 2.0f));
+  history.append(samples_of({Signal::supply_V, Signal::force_N}, 5130, 50, 3.0f));
+  REQUIRE(history.end() == 180);
+  CHECK(history.begin() == 0);
+  const SignalSeries& force = *history.find(Signal::force_N);
+  CHECK(force[0] == 2.0f);
+  CHECK(force[99] == 2.0f);
+  CHECK(std::isnan(force[100]));
+  CHECK(std::isnan(force[129]));
+  CHECK(force[130] == 3.0f);
+  CHECK(history.find(Signal::duty_1) == nullptr);
+  const SignalSeries& supply = *history.find(Signal::supply_V);
+  CHECK(std::isnan(supply[50]));
+  CHECK(supply[130] == 3.0f);
+  CHECK(std::isnan(supply.extremes(0, 130).maximum));
+  REQUIRE(history.find(doubled) != nullptr);
+  CHECK((*history.find(doubled))[50] == 4.0f);
+  CHECK((*history.find(doubled))[150] == 6.0f);
+}
+
+TEST_CASE("a restart of the board clears the history, also with a change of the selection") {
+  using protocol::Signal;
+  window::SignalHistory history(1024);
+  history.append(samples_of({Signal::force_N, Signal::duty_1}, 5000, 100, 2.0f));
+  history.append(samples_of({Signal::force_N}, 200, 50, 3.0f));
+  CHECK(history.end() == 50);
+  CHECK((*history.find(Signal::force_N))[0] == 3.0f);
 }
