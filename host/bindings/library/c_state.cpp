@@ -22,6 +22,10 @@ static_assert(std::string_view(INKWELL_VERSION) ==
                   TEXT_OF(INKWELL_VERSION_MAJOR) "." TEXT_OF(INKWELL_VERSION_MINOR) "." TEXT_OF(INKWELL_VERSION_PATCH),
               "Write the version of CMakeLists.txt into inkwell.h");
 
+// Programs contain these layouts. New members are appended.
+static_assert(offsetof(inkwell_arm_state, quaternion) == 264 && offsetof(inkwell_arm_state, joint_torque_Nm) == 344);
+static_assert(offsetof(inkwell_abilities, force_N) == 160 && offsetof(inkwell_abilities, pose_rate_Hz) == 240);
+
 constexpr auto device_search_interval = std::chrono::milliseconds(250);
 
 /// Checks the size of a program's struct, which may belong to an older or newer library. `first_size` is the size in
