@@ -382,7 +382,7 @@ INKWELL_API inkwell_result inkwell_set_joint_torques(inkwell_arm* arm, const dou
 
 /* Schedules this arm's threads, which read poses, send forces and call the servo, with SCHED_FIFO and this priority, 1
  * to 99. 0 selects normal scheduling. Returns INKWELL_NO_PERMISSION if the user may not set real-time priorities. The
- * library's mutexes inherit the priority of waiting threads. */
+ * mutexes of poses and forces inherit the priority of waiting threads. */
 INKWELL_API inkwell_result inkwell_set_thread_priority(inkwell_arm* arm, int priority);
 
 /* Function that the library calls at each pose, 1000 times per second, in a thread of the library. The function writes
