@@ -129,18 +129,28 @@ void Display::wait_for_events(double at_most_s) { glfwWaitEventsTimeout(at_most_
 void Display::wake() { glfwPostEmptyEvent(); }
 void Display::show() { glfwSwapBuffers(window_); }
 
-void write_screenshot(const std::filesystem::path& path, int width, int height) {
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+Pixels read_pixels(int left, int bottom, int width, int height) {
+  Pixels pixels{width, height, {}};
+  pixels.rgb.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+  glReadPixels(left, bottom, width, height, GL_RGB, GL_UNSIGNED_BYTE, pixels.rgb.data());
+  return pixels;
+}
+
+std::string write_png(const std::filesystem::path& file, const Pixels& pixels) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(width);
-  image.height = static_cast<png_uint_32>(height);
+  image.width = static_cast<png_uint_32>(pixels.width);
+  image.height = static_cast<png_uint_32>(pixels.height);
   image.format = PNG_FORMAT_RGB;
   // OpenGL stores the lowest row first, so the negative stride reverses the order of the rows.
-  if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), -3 * width, nullptr) == 0)
-    throw DisplayError("The screenshot " + path.string() + " cannot be written: " + image.message + ".");
+  if (png_image_write_to_file(&image, file.c_str(), 0, pixels.rgb.data(), -3 * pixels.width, nullptr) != 0) return {};
+  return "The picture " + file.string() + " cannot be written: " + image.message + ".";
+}
+
+void write_screenshot(const std::filesystem::path& path, int width, int height) {
+  if (const std::string problem = write_png(path, read_pixels(0, 0, width, height)); !problem.empty())
+    throw DisplayError(problem);
 }
 
 }  // namespace inkwell::window

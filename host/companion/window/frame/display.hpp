@@ -10,6 +10,7 @@
 #include <imgui.h>
 
 #include "host/companion/window/frame/key_filter.hpp"
+#include "host/companion/window/frame/pixels.hpp"
 #include "host/companion/window/frame/window_size.hpp"
 
 struct GLFWwindow;
@@ -67,6 +68,9 @@ class Display {
   bool had_input_ = true;
   bool lost_picture_ = true;
 };
+
+/// Reads a rectangle of the framebuffer, in pixels from the lower left corner.
+Pixels read_pixels(int left, int bottom, int width, int height);
 
 /// Writes the whole framebuffer to a file. Throws DisplayError.
 void write_screenshot(const std::filesystem::path& path, int width, int height);

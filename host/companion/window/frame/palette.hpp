@@ -44,7 +44,8 @@ struct Palette {
   Colour raised;  ///< fields, buttons
   Colour raised_hover;
   Colour raised_active;
-  Colour line;  ///< between panes, around fields
+  Colour line;     ///< between panes
+  Colour outline;  ///< around fields and buttons
   Colour text;
   Colour text_quiet;  ///< units, captions
   Colour accent;      ///< active or selected item; its text has the color `pane`
@@ -52,7 +53,7 @@ struct Palette {
   Colour on_good;  ///< text on the color `good`
   Colour caution;
   Colour on_caution;
-  Colour danger;  ///< stop, faults
+  Colour danger;  ///< fill of STOP only
   Colour on_danger;
   Colour danger_text;  ///< for text on a pane
   Colour plot_grid;
@@ -72,6 +73,7 @@ inline constexpr Palette dark_palette{
     .raised_hover = {47, 55, 66},
     .raised_active = {58, 68, 82},
     .line = {44, 51, 61},
+    .outline = {112, 122, 136},
     .text = {230, 234, 240},
     .text_quiet = {156, 167, 182},
     .accent = {98, 170, 228},
@@ -99,6 +101,7 @@ inline constexpr Palette light_palette{
     .raised_hover = {217, 223, 230},
     .raised_active = {203, 211, 220},
     .line = {208, 214, 221},
+    .outline = {118, 126, 137},
     .text = {27, 33, 41},
     .text_quiet = {80, 90, 103},
     .accent = {14, 88, 150},

@@ -57,3 +57,13 @@ TEST_CASE("every coloured button can be read, also under the mouse and pressed")
     CHECK(contrast(colours.on_caution, colours.caution) >= contrast_minimum);
   }
 }
+
+TEST_CASE("fields and buttons have an outline that is visible on the pane") {
+  constexpr double outline_minimum = 3.0;  // for controls (WCAG 2.1, 1.4.11)
+  for (const Theme theme : {Theme::dark, Theme::light}) {
+    CAPTURE(theme == Theme::dark);
+    const Palette& colours = palette(theme);
+    for (const Colour ground : {colours.pane, colours.raised, colours.sky_top})
+      CHECK(contrast(colours.outline, ground) >= outline_minimum);
+  }
+}
