@@ -95,6 +95,11 @@ void DeviceDesk::follow_choice() {
   open_session();
 }
 
+void DeviceDesk::mark(const std::string& text) {
+  events_.add(device::event_now(device::EventKind::mark, text,
+                                view_.pose ? std::optional(view_.pose->time_periods) : std::nullopt));
+}
+
 void DeviceDesk::select_signals(std::vector<protocol::Signal> signals) {
   if (signals == signals_) return;
   signals_ = std::move(signals);

@@ -55,6 +55,8 @@ class DeviceDesk {
   void select_signals(std::vector<protocol::Signal> signals);
   /// Returns all device events since the window was opened.
   const device::EventLog& events() const { return events_; }
+  /// Adds a mark of the user at the time of the newest pose.
+  void mark(const std::string& text);
   /// Returns the scope frames that arrived since the last call.
   std::vector<device::ScopeSamples> take_scope();
 

@@ -47,6 +47,21 @@ void MouseHand::put_into_inkwell() {
   change(wish);
 }
 
+void MouseHand::reference_encoders() {
+  const std::scoped_lock lock(mutex_);
+  Wish wish = wish_;
+  wish.target_m.reset();
+  wish.docked = true;
+  ++wish.references;
+  change(wish);
+}
+
+void MouseHand::wait_outside(const std::stop_token& stop) {
+  using namespace std::chrono_literals;
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, stop, 1s, [] { return false; });
+}
+
 void MouseHand::press_buttons(bool first, bool second) {
   const std::scoped_lock lock(mutex_);
   Wish wish = wish_;
@@ -84,6 +99,11 @@ void MouseHand::run(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     try {
       if (!client) client.emplace(control_);
+      if (wish.references != done.references && done.docked) {
+        client->dock(false);
+        wait_outside(stop);
+        done.docked = false;
+      }
       if (wish.docked != done.docked) client->dock(wish.docked);
       if (wish.target_m != done.target_m) {
         device::Hand hand{.holds = wish.target_m.has_value(),

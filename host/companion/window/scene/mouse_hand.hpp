@@ -32,6 +32,9 @@ class MouseHand {
   void pull_to(glm::vec3 target_m);
   void let_go();
   void put_into_inkwell();
+  /// Puts the stylus into the inkwell. If the stylus is in the inkwell, takes it out first, because the board
+  /// references the encoders when the stylus arrives.
+  void reference_encoders();
   void press_buttons(bool first, bool second);
 
   /// Returns the target of the hand; empty if the hand does not grasp the stylus.
@@ -45,11 +48,14 @@ class MouseHand {
     std::optional<glm::vec3> target_m;
     bool first_button = false;
     bool second_button = false;
+    int references = 0;  ///< number of requests to reference the encoders
     bool operator==(const Wish&) const = default;
   };
 
   void run(const std::stop_token& stop);
   void change(const Wish& wish);
+  /// Waits outside the inkwell. Returns early if the thread must stop.
+  void wait_outside(const std::stop_token& stop);
 
   device::SocketAddress control_;
   mutable std::mutex mutex_;
