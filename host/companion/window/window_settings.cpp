@@ -45,8 +45,10 @@ void read_number(toml::node_view<const toml::node> node, Number minimum, Number 
 toml::table to_toml(const ScopePlot& plot) {
   toml::array signals;
   for (const ScopeSignal& signal : plot.signals) signals.push_back(signal.name());
-  return toml::table{
+  toml::table table{
       {"kind", name_of(plot.kind, plot_kind_names)}, {"title", plot.title}, {"signals", std::move(signals)}};
+  if (plot.fixed_range) table.insert("y_range", toml::array{plot.fixed_range->minimum, plot.fixed_range->maximum});
+  return table;
 }
 
 toml::array to_toml(const std::vector<Formula>& formulas) {
@@ -84,6 +86,10 @@ std::optional<ScopePlot> plot_from(const toml::table& table, const std::vector<F
     for (const auto& each : *signals)
       if (const auto signal = find_scope_signal(each.value_or(std::string_view{}), formulas))
         plot.signals.push_back(*signal);
+  if (const toml::array* range = table["y_range"].as_array(); range != nullptr && range->size() == 2) {
+    const auto minimum = (*range)[0].value<double>(), maximum = (*range)[1].value<double>();
+    if (minimum && maximum && *minimum < *maximum) plot.fixed_range = FixedRange{*minimum, *maximum};
+  }
   if (plot.signals.empty()) return std::nullopt;
   return plot;
 }

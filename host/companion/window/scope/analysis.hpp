@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "host/companion/window/scope/signal_history.hpp"
@@ -17,6 +18,11 @@ struct Statistics {
   double root_mean_square;
   double standard_deviation;
 };
+
+inline constexpr double unknown_statistic = std::numeric_limits<double>::quiet_NaN();
+/// The statistics without samples.
+inline constexpr Statistics no_statistics{
+    0, unknown_statistic, unknown_statistic, unknown_statistic, unknown_statistic, unknown_statistic};
 
 Statistics statistics(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 

@@ -85,7 +85,10 @@ class LegendLabels {
   std::string with_values(std::size_t i, bool in_full) const {
     const SignalSeries* series = frame_.timeline.history().find(plot_.signals[i]);
     if (series == nullptr) return names_[i];
-    const auto [first, second] = frame_.cursors.values(*series, frame_.stretch);
+    auto [first, second] = frame_.cursors.values(*series, frame_.stretch);
+    const auto factor = static_cast<double>(common_shown_unit(plot_).factor);
+    first *= factor;
+    second *= factor;
     const std::string difference = formatted(second - first);
     return in_full ? fmt::format("{}  {}  {}  diff. {}", names_[i], formatted(first), formatted(second), difference)
                    : fmt::format("Δ{}  {}", last_word(names_[i]), difference);
@@ -98,8 +101,6 @@ class LegendLabels {
 };
 
 }  // namespace
-
-std::string formatted(double value) { return std::isnan(value) ? "—" : fmt::format("{:.4g}", value); }
 
 std::string short_name(const ScopeSignal& signal) {
   std::string ending = fmt::format("_{}", signal.unit());
@@ -116,8 +117,13 @@ std::string common_unit(const ScopePlot& plot) {
   return is_common ? std::string(unit) : "";
 }
 
+ShownUnit common_shown_unit(const ScopePlot& plot) {
+  const auto signals = std::span(plot.signals).subspan(first_on_y_axis(plot));
+  return common_unit(plot).empty() ? ShownUnit{""} : shown_unit(signals.front().unit());
+}
+
 float legend_width(const ScopePlot& plot, const Style& style) {
-  float width = width_of(common_unit(plot), style) + style.points(8);
+  float width = width_of(std::string(common_shown_unit(plot).name), style) + style.points(8);
   for (const std::string& name : names_on_y_axis(plot))
     width += width_of(name, style) + style.points(label_margin_points);
   return width;
@@ -137,7 +143,8 @@ void draw_legend(const ScopePlot& plot, ImVec2 origin, float width, const PlotFr
   ImFont* font = style.fonts.caption;
   const ImU32 quiet = packed(style.palette->text_quiet);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const std::string unit = common_unit(plot);
+  const std::string unit(common_shown_unit(plot).name);
+  note_text(unit);
   list.AddText(font, font->FontSize, {origin.x + style.points(2), origin.y}, quiet, unit.c_str());
   const float room = width - width_of(unit, style) - style.points(8);
   const std::vector<std::string> labels = LegendLabels(plot, frame, room).labels();

@@ -30,10 +30,18 @@ enum class PlotKind : std::uint8_t {
 };
 inline constexpr std::size_t plot_kind_count = static_cast<std::size_t>(PlotKind::xy) + 1;  // xy is the last kind
 
+/// Fixed range of the y axis, in the unit of the signals.
+struct FixedRange {
+  double minimum;
+  double maximum;
+  bool operator==(const FixedRange&) const = default;
+};
+
 struct ScopePlot {
   PlotKind kind = PlotKind::time;
   std::string title;
   std::vector<ScopeSignal> signals;
+  std::optional<FixedRange> fixed_range = {};  ///< empty: the range follows the signals
   bool operator==(const ScopePlot&) const = default;
 };
 

@@ -181,6 +181,11 @@ void SignalHistory::derive(const std::vector<ScopeSignal>& formulas) {
   over_.derive(formulas);
 }
 
+std::optional<std::uint64_t> SignalHistory::index_of(std::int64_t period) const {
+  const std::int64_t index = static_cast<std::int64_t>(end()) - (next_period_ - period);
+  return index < 0 || end() == 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(index));
+}
+
 std::optional<std::uint64_t> SignalHistory::gap_before(const device::ScopeSamples& samples) const {
   std::uint64_t gap = samples.lost_before;
   if (samples.signals != shown_.signals()) {

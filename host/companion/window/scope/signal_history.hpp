@@ -108,6 +108,9 @@ class SignalHistory {
   /// Sets the formulas that are computed in addition to the signals.
   void derive(const std::vector<ScopeSignal>& formulas);
 
+  /// Returns the index of a control period, which need not be in the history; empty before the first sample.
+  std::optional<std::uint64_t> index_of(std::int64_t period) const;
+  std::size_t capacity() const { return capacity_; }
   std::uint64_t begin() const { return shown_.begin(); }
   std::uint64_t end() const { return shown_.end(); }
   const SignalSeries* find(const ScopeSignal& signal) const { return shown_.find(signal); }

@@ -71,3 +71,13 @@ TEST_CASE("settings are written to a file in a new folder, and a write error is 
   CHECK(read_settings(directory.file("none.toml")) == WindowSettings{});
   CHECK(write_settings(settings, "/proc/none/window.toml").find("/proc/none/window.toml") != std::string::npos);
 }
+
+TEST_CASE("the fixed range of a plot is saved, and a reversed range is ignored") {
+  WindowSettings settings;
+  settings.scope.layout.plots.front().fixed_range = FixedRange{-0.5, 1.5};
+  CHECK(parse_settings(format_settings(settings)) == settings);
+  const WindowSettings reversed =
+      parse_settings("[scope]\nname = \"own\"\n[[scope.plots]]\nsignals = [\"force_N\"]\ny_range = [2.0, 1.0]\n");
+  REQUIRE(reversed.scope.layout.plots.size() == 1);
+  CHECK_FALSE(reversed.scope.layout.plots[0].fixed_range.has_value());
+}

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "host/companion/window/scope/analysis.hpp"
+#include "host/companion/window/scope/statistics_text.hpp"
 
 using namespace inkwell::window;
 
@@ -71,4 +72,15 @@ TEST_CASE("noise is no motion, a step and a constant that moves by pixels are") 
   const float lost = std::nanf("");
   CHECK_FALSE(leaves_range({lost, lost}, {0.0f, 1.0f}, 0.1));
   CHECK_FALSE(leaves_range({0.0f, 1.0f}, {lost, lost}, 0.1));
+}
+
+TEST_CASE("every text of the statistics has the unit, and shorter texts are available for narrow plots") {
+  const Statistics statistics{10, -0.001, 0.002, 0.0005, 0.0007, 0.0004};
+  const auto lines = statistics_lines(statistics, shown_unit("m"));
+  REQUIRE(lines.size() > 2);
+  CHECK(lines.front() == "mean 0.5 mm   rms 0.7 mm   deviation 0.4 mm   -1 to 2 mm");
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    CHECK(lines[i].ends_with(" mm"));
+    if (i > 0) CHECK(lines[i].size() < lines[i - 1].size());
+  }
 }

@@ -47,16 +47,55 @@ TEST_CASE("a long picture rolls by whole parts of its span, so that it does not 
   CHECK(last > 50'001 - part);
 }
 
-TEST_CASE("a pause retains the picture and discards new samples, and the history restarts after the pause") {
+TEST_CASE("a pause retains the picture, and the samples of the pause are visible after the pause") {
   Timeline timeline = with_samples(10'000);
   timeline.pause(true);
   receive(timeline, 500);
-  CHECK(timeline.history().end() == 10'000);
   CHECK(timeline.stretch().last == 10'000);
+  CHECK(timeline.stretch().zero == 10'000);
   timeline.pause(false);
-  CHECK(timeline.history().end() == 0);
-  receive(timeline, 500);
-  CHECK(timeline.stretch().last == 500);
+  CHECK(timeline.history().end() == 10'500);
+  CHECK(timeline.stretch().last == 10'500);
+}
+
+TEST_CASE("a long pause discards new samples before they overwrite the picture, and leaves a gap") {
+  Timeline timeline = with_samples(10'000);
+  timeline.pause(true);
+  const double first = timeline.stretch().first;
+  constexpr std::size_t part = 100'000;
+  for (int i = 0; i < 30; ++i) {
+    device::ScopeSamples samples{{force}, 10'000 + i * static_cast<std::int64_t>(part), part, {}, 0};
+    samples.values.assign(part, 0.5f);
+    timeline.receive(samples);
+  }
+  CHECK(static_cast<double>(timeline.history().begin()) <= first);
+  const auto stored = timeline.history().end();
+  timeline.pause(false);
+  device::ScopeSamples samples{{force}, 10'000 + 30 * static_cast<std::int64_t>(part), part, {}, 0};
+  samples.values.assign(part, 0.5f);
+  timeline.receive(samples);
+  REQUIRE(timeline.history().end() == 10'000 + 31 * part);
+  CHECK(std::isnan((*timeline.history().find(force))[stored]));
+}
+
+TEST_CASE("a fault freezes the picture shortly after the fault, and the time axis begins at the fault") {
+  Timeline timeline = with_samples(10'000);
+  constexpr std::int64_t fault_period = 9'900;
+  timeline.freeze_at(fault_period);
+  CHECK_FALSE((timeline.stretch(), timeline.is_paused()));
+  receive(timeline, 10'000);
+  const Stretch frozen = timeline.stretch();
+  CHECK(timeline.is_frozen_at_fault());
+  CHECK(frozen.zero == fault_period);
+  CHECK(frozen.last == doctest::Approx(fault_period + 0.25 * 0.1 * rate_Hz));
+  timeline.pause(false);
+  CHECK_FALSE(timeline.is_frozen_at_fault());
+  CHECK(timeline.stretch().last == 20'000);
+  timeline.show_fault();
+  CHECK(timeline.stretch().zero == fault_period);
+  timeline.restart();
+  timeline.show_fault();
+  CHECK_FALSE(timeline.is_paused());
 }
 
 TEST_CASE("a drag pauses the timeline and moves it into the past, as far as samples exist") {
