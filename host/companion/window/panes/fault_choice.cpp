@@ -72,9 +72,41 @@ std::string_view title_of(InjectionPart part) {
   return "";
 }
 
+std::string readable_name(std::string_view name) {
+  std::string words(name);
+  std::ranges::replace(words, '_', ' ');
+  if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
+std::string with_readable_name(std::string_view sentence) {
+  constexpr std::string_view beginning = "The virtual board refused \"inject\": ";
+  if (sentence.starts_with(beginning)) sentence.remove_prefix(beginning.size());
+  const std::string_view name = sentence.substr(0, sentence.find(' '));
+  if (!protocol::find_injection(name)) return std::string(sentence);
+  return readable_name(name) + std::string(sentence.substr(name.size()));
+}
+
+std::string_view missing_input(const TypedInjection& typed) {
+  if (!typed.of.empty() && info(typed.fault).location == InjectionLocation::wires)
+    return typed.of.find('+') == std::string::npos ? "Choose the second wire first." : "";
+  if (!typed.of.empty()) return "";
+  switch (info(typed.fault).location) {
+    case InjectionLocation::none:
+    case InjectionLocation::address: return "";
+    case InjectionLocation::motor: return "Choose a motor first.";
+    case InjectionLocation::leg: return "Choose a leg first.";
+    case InjectionLocation::wire: return "Choose a wire first.";
+    case InjectionLocation::wires: return "Choose two wires first.";
+    case InjectionLocation::exception: return "Enter the number of the exception first.";
+    case InjectionLocation::converter: return "Choose a converter first.";
+  }
+  return "";
+}
+
 bool is_found(const protocol::InjectionInfo& row, std::string_view search) {
-  const std::string text =
-      in_small_letters(fmt::format("{} {} {}", row.name, title_of(row.part), protocol::help_of(row)));
+  const std::string text = in_small_letters(
+      fmt::format("{} {} {} {}", row.name, readable_name(row.name), title_of(row.part), protocol::help_of(row)));
   const std::string small = in_small_letters(std::string(search));
   const std::string_view words = small;
   for (std::size_t begin = 0; begin < words.size();) {

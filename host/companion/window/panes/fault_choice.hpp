@@ -17,6 +17,9 @@ std::string_view obstacle(const device::SessionStatus& status, bool knows_contro
 /// Returns a title such as "Bridge legs".
 std::string_view title_of(protocol::InjectionPart part);
 
+/// Returns a name in words, such as "Wire open" for "wire_open".
+std::string readable_name(std::string_view name);
+
 /// Returns true if each word of the search occurs in the fault's name, part or help. The search ignores case. An empty
 /// search matches every fault.
 bool is_found(const protocol::InjectionInfo& row, std::string_view search);
@@ -29,6 +32,12 @@ struct TypedInjection {
   protocol::InjectedFault fault;
   std::string of, amount, after_s, for_s;
 };
+
+/// Replaces the name of a fault at the start of a refusal by words.
+std::string with_readable_name(std::string_view sentence);
+
+/// Returns the missing field of an incomplete input, such as "Choose a wire."; empty if the input is complete.
+std::string_view missing_input(const TypedInjection& typed);
 
 /// Converts the fields to a request. Throws device::Error if a field is not a number.
 protocol::InjectionRequest request_of(const TypedInjection& typed);

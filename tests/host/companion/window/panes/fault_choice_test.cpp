@@ -115,3 +115,21 @@ TEST_CASE("duration_text returns milliseconds or seconds") {
   CHECK(duration_text(0.0124) == "12.4 ms");
   CHECK(duration_text(1.352) == "1.35 s");
 }
+
+TEST_CASE("names of faults are shown in words, and the search accepts both forms") {
+  CHECK(window::readable_name("wire_open") == "Wire open");
+  CHECK(window::with_readable_name("motor_hot 400 K is outside 0 to 300.") == "Motor hot 400 K is outside 0 to 300.");
+  CHECK(window::with_readable_name("Another sentence.") == "Another sentence.");
+  const auto& row = protocol::info(protocol::InjectedFault::wire_open);
+  CHECK(window::is_found(row, "wire_open"));
+  CHECK(window::is_found(row, "wire open"));
+}
+
+TEST_CASE("a fault with a location cannot be injected before the location is chosen") {
+  const auto missing = [](protocol::InjectedFault fault, const char* of) {
+    return window::missing_input({fault, of, {}, {}, {}});
+  };
+  CHECK(missing(protocol::InjectedFault::wire_open, "") == "Choose a wire first.");
+  CHECK(missing(protocol::InjectedFault::wire_open, "PA0") == "");
+  CHECK(missing(protocol::InjectedFault::supply_sag, "") == "");
+}
