@@ -295,3 +295,61 @@ TEST_CASE("pictures: a fault, no device, and choosing a file" * doctest::skip())
   rig.wait_until("it says so", [](const Sight& now) { return now.says("No arm was found"); });
   rig.picture(picture_file("unplugged"));
 }
+
+TEST_CASE("pictures: every pane in a small, a usual and a large window, dark and light" * doctest::skip()) {
+  struct Size {
+    const char *width, *height, *scale, *screen;
+  };
+  for (const Size size : {Size{"1024", "600", "1", "1024x600"}, Size{"1280", "800", "1", "1280x800"},
+                          Size{"1920", "1080", "2", "3840x2160"}})
+    for (const std::string theme : {"dark", "light"}) {
+      const TemporaryDirectory directory;
+      WindowRig rig({"--layout", "contact", "--theme", theme, "--width", size.width, "--height", size.height, "--scale",
+                     size.scale},
+                    true, size.screen);
+      const auto photograph = [&](const std::string& what) {
+        rig.look();
+        rig.picture(picture_file(std::string("pane ") + size.screen + " " + theme + " " + what));
+      };
+      rig.enter("tuning/wall_stiffness_N_per_m", "9000");
+      rig.press_key("Return");
+      rig.wait_until("it is refused", [](const Sight& now) { return now.says("0 to 3000 N/m."); });
+      photograph("tuning");
+      rig.enter("tuning/wall_stiffness_N_per_m", "900");
+      rig.press_key("Return");
+      rig.click("tabs/Guides");
+      photograph("guides");
+      rig.click("tabs/Recording");
+      rig.enter("recording/file", directory.file("push.h5"));
+      rig.press_key("ctrl+r");
+      rig.switch_force_on();
+      press_against_the_right_wall(rig);
+      rig.control.resume();
+      rig.press_key("ctrl+m");
+      rig.click("scope/Statistics");
+      photograph("recording");
+      rig.press_key("ctrl+r");
+      rig.click("tabs/Faults");
+      rig.enter("faults/search", "wire open");
+      rig.click("faults/wire_open");
+      photograph("faults");
+      rig.click("scope/Statistics");
+      rig.control.supply(6.0);
+      rig.wait_until("a fault", [](const Sight& now) { return now.state() == "fault"; });
+      rig.control.run(0.6);
+      rig.control.resume();
+      rig.click("tabs/Log");
+      photograph("log and fault");
+      rig.click("scope/Position");
+      photograph("plot menu");
+      rig.press_key("Escape");
+      rig.control.supply(18.0);
+      rig.click("banner/Clear fault");
+      rig.click("tabs/Recording");
+      if (const auto pane = rig.look(); !pane.has("recording/Replay last recording"))
+        rig.scroll_down(pane.item("recording/Save last 60 s").centre(), 10);
+      rig.click("recording/Replay last recording");
+      rig.wait_until("it plays", [](const Sight& now) { return now.says("REPLAY"); });
+      photograph("replay");
+    }
+}

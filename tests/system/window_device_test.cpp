@@ -101,7 +101,7 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   CHECK(rig.look().says("push (simulation)"));
   rig.click("tabs/Tuning");
   CHECK(rig.look().says("These parameters are from the recording."));
-  rig.click("replay/Close");
+  rig.click("replay/Close replay");
   CHECK_FALSE(rig.look().says("These parameters are from the recording."));
 }
 

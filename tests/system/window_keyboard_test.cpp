@@ -98,8 +98,8 @@ TEST_CASE("Enter in the signal list adds a plot for the selected signal") {
   rig.tap_key("Return");
   rig.wait_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
   go_to(rig, "Left", "scope/layout", 12);
-  go_to(rig, "Down", "scope/Position", 3);
-  go_to(rig, "Left", "scope/search", 3);
+  rig.tap_key("Down");
+  go_to(rig, "Left", "scope/search", 5);
   rig.tap_key("Return");
   rig.type("supply");
   rig.wait_until("it is found", [](const Sight& now) { return now.has("scope/supply_V"); });
@@ -146,7 +146,7 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
 TEST_CASE("Escape leaves the keyboard where it is, and a button that changes its name keeps it") {
   WindowRig rig;
   go_to_part(rig, "status");
-  go_to(rig, "Right", "status/Switch force on", 12);
+  go_to(rig, "Right", "status/Switch force on", 20);
   rig.tap_key("Return");
   rig.wait_until("the force is on", [](const Sight& now) { return now.state() == "active"; });
   CHECK(rig.look().with_keyboard() == "status/Force is on");

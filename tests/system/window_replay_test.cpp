@@ -52,7 +52,7 @@ Image picture_of(WindowRig& rig) {
 /// Returns the number of pixels that differ in the area of the plots.
 std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& other) {
   const Sight sight = rig.look();
-  const Item bar = sight.item("replay/Close"), panes = sight.item("tabs/Tuning");
+  const Item bar = sight.item("replay/Close replay"), panes = sight.item("tabs/Tuning");
   std::size_t changed = 0;
   for (auto y = static_cast<std::size_t>(bar.y + 2 * bar.height); y < one.height; ++y)
     for (std::size_t x = 0; x < static_cast<std::size_t>(panes.x); ++x) {

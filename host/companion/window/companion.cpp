@@ -21,7 +21,8 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       may_start_virtual_board_(options.start_virtual_board != nullptr),
       problem_(std::move(problem)),
       settings_(settings),
-      style_{&palette(settings.theme), load_fonts(scale), scale},
+      fonts_(scale),
+      style_{&palette(settings.theme), fonts_.fonts(), scale},
       desk_(options.list_devices, options.serial_number),
       updater_(options.firmware, options.board),
       scope_pane_(settings.scope),
@@ -67,6 +68,10 @@ void Companion::key(const KeyEvent& event) {
   if (down && key == GLFW_KEY_F1) key_help_.open();
   if (down && key >= GLFW_KEY_F2 && key < GLFW_KEY_F12 && !is_dialog_open())
     keyboard_.go_to(column_.show(static_cast<std::size_t>(key - GLFW_KEY_F2)));
+  if (down && (event.modifiers & control_modifier) != 0 && !is_dialog_open()) {
+    const char* name = glfwGetKeyName(key, event.scancode);  // follows the keyboard layout
+    if (name != nullptr && name[0] != '\0' && name[1] == '\0') shortcuts_ += name[0];
+  }
   if (!hand_ || (down && types)) return;
   if (key == GLFW_KEY_1) button_1_ = down;
   if (key == GLFW_KEY_2) button_2_ = down;
@@ -92,6 +97,34 @@ void Companion::take_keyboard_shortcuts(double now_s) {
   if (is_tapped(ImGuiKey_Y)) editor_.redo(now_s);
 }
 
+void Companion::prepare() {
+  if (fonts_.update()) style_.fonts = fonts_.fonts();
+}
+
+void Companion::take_shortcuts() {
+  RecordingControls& recording = column_.recording_controls();
+  const std::vector<protocol::Signal> signals = scope_pane_.signals();
+  for (const char letter : std::exchange(shortcuts_, {})) {
+    const bool can_toggle =
+        !recording.recording_clock().empty() || recording.why_recording_waits(column_.scope_is_free(signals)).empty();
+    if (letter == 'r' && can_toggle) recording.toggle_recording(signals);
+    if (letter == 'm') recording.set_mark();
+    if (letter == 's') recording.save_captured();
+    if (letter == 'p') replay_bar_.is_open() ? replay_bar_.toggle_play() : scope_pane_.toggle_pause();
+  }
+}
+
+NextStepSituation Companion::situation() const {
+  return {.has_hand = hand_.has_value(), .is_replay = replay_bar_.is_open(), .force_waits = column_.why_force_waits()};
+}
+
+void Companion::follow_fault() {
+  const auto& fault = desk_.view().status.fault;
+  if (fault && fault != seen_fault_ && !replay_bar_.is_open()) scope_pane_.freeze_at_fault(fault->at_periods);
+  seen_fault_ = fault;
+  if (protocol::force_is_on(desk_.view().state())) scope_pane_.resume_after_fault();
+}
+
 void Companion::lay_out(ImVec2 size, double now_s) {
   arrived_ = desk_.newest_pose();
   follow_device(now_s);
@@ -99,19 +132,22 @@ void Companion::lay_out(ImVec2 size, double now_s) {
   take_keyboard_shortcuts(now_s);
   pose_ = replay_bar_.is_open() ? replay_bar_.pose() : desk_.view().pose;
 
-  const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open(), updater_.sight());
-  const float height_of_banner = banner ? banner_height(size.x, style_, *banner) : 0.0f;
+  take_shortcuts();
+  follow_fault();
+
   const WindowLayout layout =
       layout_of(size,
                 {.status_height = status_bar_.height(size.x, style_),
-                 .banner_height = height_of_banner,
-                 .banner_room = banner_room(height_of_banner),
                  .replay_height = replay_bar_.is_open() ? style_.points(replay_bar_points) : 0.0f},
                 settings_, style_.scale);
-  StatusBarOutcome outcome = draw_bars(layout, banner);
-  if (draw_scene(layout, now_s)) outcome.switch_force_on = true;
-  draw_column(layout, size, now_s);
+  const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open(), updater_.sight());
+  const float height_of_banner = banner ? banner_height(layout.banner(0.0f).size.x, style_, *banner) : 0.0f;
+  StatusBarOutcome outcome = draw_status_bar(layout);
+  draw_scene(layout, height_of_banner, now_s, outcome);
+  if (banner) draw_banner_over_scene(layout, *banner, height_of_banner, outcome);
+  draw_column(layout, now_s);
   draw_scope(layout);
+  draw_splitters(layout, size);
   key_help_.draw(style_);
   move_borders(layout, size);
   keyboard_.end_frame(style_);
@@ -149,20 +185,29 @@ void Companion::follow_parameters(const DeviceView& view, double now_s) {
   returned_.follow(view, now_s);
 }
 
-float Companion::banner_room(float banner_height) {
-  if (!ImGui::IsAnyMouseDown()) banner_room_ = banner_height;
-  return banner_room_;
+StatusBarOutcome Companion::draw_status_bar(const WindowLayout& layout) {
+  const RecordingControls& recording = column_.recording_controls();
+  return status_bar_.draw(
+      layout.status.origin, layout.status.size, style_, desk_,
+      {.scope_is_shown = settings_.scope_is_shown,
+       .force_waits = why_force_waits(desk_.view(), situation()),
+       .recording_waits = recording.why_recording_waits(column_.scope_is_free(scope_pane_.signals())),
+       .recording_clock = recording.recording_clock()});
 }
 
-StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner) {
-  StatusBarOutcome outcome =
-      status_bar_.draw(layout.status.origin, layout.status.size, style_, desk_,
-                       {.scope_is_shown = settings_.scope_is_shown, .is_replay = replay_bar_.is_open()});
-  if (!banner || !draw_banner(layout.banner.origin, layout.banner.size, style_, *banner)) return outcome;
-  outcome.clear_fault = banner->action == BannerAction::clear_fault;
-  if (banner->action == BannerAction::update_firmware) update_firmware();
-  if (banner->action == BannerAction::take_over) desk_.session().take_over();
-  return outcome;
+void Companion::draw_banner_over_scene(const WindowLayout& layout, const Banner& banner, float height,
+                                       StatusBarOutcome& outcome) {
+  const auto [origin, size] = layout.banner(height);
+  switch (draw_banner(origin, size, style_, banner)) {
+    case BannerAction::none: break;
+    case BannerAction::clear_fault: outcome.clear_fault = true; break;
+    case BannerAction::show_signals:
+      settings_.scope_is_shown = true;
+      scope_pane_.show_fault();
+      break;
+    case BannerAction::update_firmware: update_firmware(); break;
+    case BannerAction::take_over: desk_.session().take_over(); break;
+  }
 }
 
 void Companion::carry_out(const StatusBarOutcome& outcome) {
@@ -170,24 +215,36 @@ void Companion::carry_out(const StatusBarOutcome& outcome) {
   if (outcome.switch_force_on) desk_.session().send(protocol::Command::enable_force);
   if (outcome.clear_fault) desk_.session().send(protocol::Command::clear_fault);
   if (outcome.help) key_help_.open();
+  if (outcome.toggle_recording) column_.recording_controls().toggle_recording(scope_pane_.signals());
+  if (outcome.mark) column_.recording_controls().set_mark();
   if (outcome.toggle_scope) settings_.scope_is_shown = !settings_.scope_is_shown;
   if (outcome.toggle_theme) use_theme(settings_.theme == Theme::dark ? Theme::light : Theme::dark);
 }
 
-bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
+void Companion::draw_scene(const WindowLayout& layout, float banner_height, double now_s, StatusBarOutcome& outcome) {
   const bool replays = replay_bar_.is_open();
   scene_ = layout.scene;
-  const bool asks_for_force =
-      scene_pane_.draw(scene_.origin, scene_.size,
-                       {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr, now_s, replays,
-                        !returned_.waits_for_user()});
+  const std::optional<NextStep> next_step =
+      returned_.waits_for_user() ? std::nullopt : next_step_of(desk_.view(), situation());
+  const bool is_taken = scene_pane_.draw(scene_.origin, scene_.size,
+                                         {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr,
+                                          now_s, replays, next_step, banner_height});
+  if (is_taken) take_next_step(next_step->action, outcome);
   if (replays) {
     replay_bar_.draw(layout.replay.origin, layout.replay.size, style_, scope_pane_);
   } else {
     draw_card(layout);
     if (!has_card() && returned_.is_shown()) draw_returned_values(layout, now_s);
   }
-  return asks_for_force;
+}
+
+void Companion::take_next_step(NextAction action, StatusBarOutcome& outcome) {
+  switch (action) {
+    case NextAction::switch_force_on: outcome.switch_force_on = true; break;
+    case NextAction::into_inkwell: hand_->reference_encoders(); break;
+    case NextAction::show_guides: keyboard_.go_to(column_.show("Guides")); break;
+    case NextAction::show_log: keyboard_.go_to(column_.show("Log")); break;
+  }
 }
 
 void Companion::draw_returned_values(const WindowLayout& layout, double now_s) {
@@ -221,15 +278,23 @@ void Companion::update_firmware() {
   updater_.begin(desk_.wanted_serial_number());
 }
 
-void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double now_s) {
+void Companion::draw_column(const WindowLayout& layout, double now_s) {
   column_.draw(layout.column.origin, layout.column.size,
                {.style = style_,
                 .editor = shown_parameters(),
                 .is_replay = replay_bar_.is_open(),
                 .scope_signals = scope_pane_.signals(),
                 .now_s = now_s});
+}
+
+// The splitters are in front of the panes, because their sensitive areas are wider than the gaps between the panes.
+void Companion::draw_splitters(const WindowLayout& layout, ImVec2 window) {
   const auto [origin, size] = layout.column_splitter;
   drag_column_splitter(splitter("tuning splitter", origin, size, true, style_), window, style_.scale, settings_);
+  if (!settings_.scope_is_shown) return;
+  const Rectangle& above_scope = layout.scope_splitter;
+  drag_scope_splitter(splitter("scope splitter", above_scope.origin, above_scope.size, false, style_), layout,
+                      style_.scale, settings_);
 }
 
 void Companion::move_borders(const WindowLayout& layout, ImVec2 window) {
@@ -242,16 +307,14 @@ void Companion::move_borders(const WindowLayout& layout, ImVec2 window) {
 
 void Companion::draw_scope(const WindowLayout& layout) {
   if (!settings_.scope_is_shown) return;
-  const auto [origin, size] = layout.scope_splitter;
-  drag_scope_splitter(splitter("scope splitter", origin, size, false, style_), layout, style_.scale, settings_);
-  scope_pane_.draw(layout.scope.origin, layout.scope.size, style_);
+  scope_pane_.draw(layout.scope.origin, layout.scope.size, style_, replay_bar_.is_open());
 }
 
 void Companion::judge_motion() {
   const bool scene_moves = differs_visibly(drawn_pose_, pose_);
   const bool is_updating = updater_.sight().phase == FirmwareUpdater::Phase::runs;
-  is_moving_ = scene_moves || is_updating || column_.is_moving() || replay_bar_.is_playing() ||
-               (settings_.scope_is_shown && scope_pane_.take_motion());
+  is_moving_ = scene_moves || is_updating || scope_pane_.is_saving() || fonts_.is_loading() || column_.is_moving() ||
+               replay_bar_.is_playing() || (settings_.scope_is_shown && scope_pane_.take_motion());
   if (scene_moves) drawn_pose_ = pose_;
 }
 
@@ -293,6 +356,11 @@ nlohmann::json Companion::inspect() const {
   const DeviceView& view = desk_.view();
   nlohmann::json known{{"connected", view.connected()}, {"state", protocol::info(view.state()).name}};
   if (view.pose) known["pose_at_periods"] = view.pose->time_periods;
+  known["plot_ranges"] = nlohmann::json::object();
+  for (const auto& [title, range] : scope_pane_.drawn_ranges())
+    known["plot_ranges"][title] = {range.minimum, range.maximum};
+  known["missing_glyphs"] = fonts_.missing();
+  known["fonts_are_loading"] = fonts_.is_loading();
   if (arrived_) known["arrived_at_periods"] = arrived_->time_periods;
   if (view.status.applied_at_periods) known["applied_at_periods"] = *view.status.applied_at_periods;
   return known;

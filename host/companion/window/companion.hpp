@@ -10,6 +10,7 @@
 #include "host/companion/window/bars/replay_bar.hpp"
 #include "host/companion/window/bars/status_bar.hpp"
 #include "host/companion/window/device_desk/device_desk.hpp"
+#include "host/companion/window/device_desk/next_step.hpp"
 #include "host/companion/window/device_desk/parameter_editor.hpp"
 #include "host/companion/window/device_desk/returned_values.hpp"
 #include "host/companion/window/frame/frame_loop.hpp"
@@ -34,12 +35,15 @@ class Companion final : public FrameContent {
   /// only types a space.
   void key(const KeyEvent& event) override;
   bool needs_frame() const override;
+  void prepare() override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }
   /// Returns true after the user has requested a virtual board. The caller then restarts the window.
   bool is_over() const override { return wants_virtual_board_; }
   Box canvas() const override;
   std::uint64_t canvas_digest() const override;
+  std::optional<Box> wanted_picture() const override { return scope_pane_.wanted_picture(); }
+  void take_picture(Pixels pixels) override { scope_pane_.take_picture(std::move(pixels)); }
   Colour ground() const override { return style_.palette->pane; }
   void paint(const Canvas& canvas) override;
   nlohmann::json inspect() const override;
@@ -55,14 +59,19 @@ class Companion final : public FrameContent {
   /// Moves the splitters while Alt and an arrow key are pressed.
   void move_borders(const WindowLayout& layout, ImVec2 window);
 
-  /// Returns the height that the layout reserves for the banner. The height is constant while a mouse button is down,
-  /// so that the layout does not shift during a drag.
-  float banner_room(float banner_height);
-  StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
-  /// Returns true if the user switches the force on.
-  bool draw_scene(const WindowLayout& layout, double now_s);
+  /// Handles the keys with Ctrl that were pressed since the last frame.
+  void take_shortcuts();
+  NextStepSituation situation() const;
+  StatusBarOutcome draw_status_bar(const WindowLayout& layout);
+  void draw_banner_over_scene(const WindowLayout& layout, const Banner& banner, float height,
+                              StatusBarOutcome& outcome);
+  void draw_scene(const WindowLayout& layout, float banner_height, double now_s, StatusBarOutcome& outcome);
+  void take_next_step(NextAction action, StatusBarOutcome& outcome);
+  /// Freezes the scope at a new fault, and resumes the scope when the force is on again.
+  void follow_fault();
+  void draw_splitters(const WindowLayout& layout, ImVec2 window);
   void draw_returned_values(const WindowLayout& layout, double now_s);
-  void draw_column(const WindowLayout& layout, ImVec2 window, double now_s);
+  void draw_column(const WindowLayout& layout, double now_s);
   void draw_scope(const WindowLayout& layout);
   void judge_motion();
 
@@ -83,6 +92,7 @@ class Companion final : public FrameContent {
   bool wants_virtual_board_ = false;
   std::string problem_;
   WindowSettings settings_;
+  FontLoader fonts_;
   Style style_;
   DeviceDesk desk_;
   std::optional<MouseHand> hand_;
@@ -99,7 +109,8 @@ class Companion final : public FrameContent {
 
   std::uint64_t seen_revision_ = 0;
   std::string seen_refusal_;
-  float banner_room_ = 0.0f;                ///< value of the previous frame
+  std::string shortcuts_;  ///< letters that were pressed with Ctrl since the last frame
+  std::optional<device::NoticedFault> seen_fault_;
   Rectangle scene_;                         ///< position in the last layout
   std::optional<device::Pose> arrived_;     ///< the device's newest pose at the start of the frame
   std::optional<device::Pose> pose_;        ///< displayed pose, from the device or from the recording

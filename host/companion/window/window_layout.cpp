@@ -8,6 +8,8 @@ namespace inkwell::window {
 namespace {
 
 constexpr float splitter_points = 5.0f;
+constexpr float banner_margin_points = 12.0f;
+constexpr float scene_buttons_points = 46.0f;
 constexpr float scene_minimum_points = 240.0f;
 constexpr float column_part_maximum = 0.5f;  // of the window's width
 
@@ -24,9 +26,15 @@ ImVec2 WindowLayout::middle_of_scene() const {
   return {scene.origin.x + 0.5f * scene.size.x, scene.origin.y + 0.45f * scene.size.y};
 }
 
+Rectangle WindowLayout::banner(float height) const {
+  const float margin = banner_margin_points * scale;
+  return {{scene.origin.x + margin, scene.origin.y + scene_buttons_points * scale},
+          {scene.size.x - 2 * margin, height}};
+}
+
 WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSettings& settings, float scale) {
   const float gap = splitter_points * scale;
-  const float top = needs.status_height + needs.banner_room;
+  const float top = needs.status_height;
   const float room = window.y - top;
   const float column_width = std::min(std::max(settings.column_width, WindowSettings::column_width_minimum) * scale,
                                       column_part_maximum * window.x);
@@ -36,7 +44,6 @@ WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSett
 
   WindowLayout layout{};
   layout.status = {{0, 0}, {window.x, needs.status_height}};
-  layout.banner = {{0, needs.status_height}, {window.x, needs.banner_height}};
   layout.scene = {{0, top}, {left_width, scene_end - top - needs.replay_height}};
   layout.replay = {{0, scene_end - needs.replay_height}, {left_width, needs.replay_height}};
   layout.scope_splitter = {{0, scene_end}, {left_width, gap}};
@@ -44,6 +51,7 @@ WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSett
   layout.column_splitter = {{left_width, top}, {gap, room}};
   layout.column = {{left_width + gap, top}, {window.x - left_width - gap, room}};
   layout.room = room;
+  layout.scale = scale;
   return layout;
 }
 

@@ -14,19 +14,20 @@ struct Rectangle {
 
 /// All rectangles are in screen coordinates.
 struct WindowLayout {
-  Rectangle status, banner, scene, replay, scope, column;
+  Rectangle status, scene, replay, scope, column;
   Rectangle column_splitter;  ///< left of the column
   Rectangle scope_splitter;   ///< above the scope
   float room;                 ///< height that scene and scope share
+  float scale;
 
   ImVec2 middle_of_scene() const;
+  /// The banner covers the scene below the buttons, so that no other part moves when a banner appears.
+  Rectangle banner(float height) const;
 };
 
 /// Heights in screen coordinates. Hidden items have the height 0.
 struct LayoutNeeds {
   float status_height;
-  float banner_height;
-  float banner_room;  ///< reserved height; with 0 the banner covers the parts below the bars
   float replay_height;
 };
 

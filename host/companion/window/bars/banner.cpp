@@ -1,5 +1,7 @@
 #include "host/companion/window/bars/banner.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "host/client/device/fault_text.hpp"
@@ -14,10 +16,14 @@ namespace {
 
 constexpr float banner_margin_points = 12.0f;
 constexpr float button_points = 118.0f;
+constexpr float button_height_points = 28.0f;
+constexpr float text_left_points = 44.0f;
+constexpr float banner_top_points = 10.0f;
 
 float banner_text_width(float width, const Style& style, const Banner& banner) {
-  return width - style.points(44 + (banner.action != BannerAction::none ? button_points + 2 * banner_margin_points
-                                                                        : banner_margin_points));
+  return width -
+         style.points(text_left_points + (banner.action != BannerAction::none ? button_points + 2 * banner_margin_points
+                                                                              : banner_margin_points));
 }
 
 /// Returns an update banner if the firmware versions differ.
@@ -64,31 +70,44 @@ float banner_height(float width, const Style& style, const Banner& banner) {
   const auto taken = [room](ImFont* font, const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e4f, room, text.c_str()).y;
   };
-  return taken(style.fonts.strong, banner.what) + taken(style.fonts.body, banner.remedy) + style.points(26);
+  const float text = taken(style.fonts.strong, banner.what) + taken(style.fonts.body, banner.remedy);
+  const float buttons = banner.is_fault()                     ? 2 * button_height_points + 6
+                        : banner.action == BannerAction::none ? 0
+                                                              : button_height_points;
+  return std::max(text + ImGui::GetStyle().ItemSpacing.y, style.points(buttons)) + style.points(2 * banner_top_points);
 }
 
-bool draw_banner(ImVec2 origin, ImVec2 size, const Style& style, const Banner& banner) {
+BannerAction draw_banner(ImVec2 origin, ImVec2 size, const Style& style, const Banner& banner) {
   const Palette& palette = *style.palette;
-  const Colour colour = banner.is_fault() ? palette.danger : palette.caution;
+  const Colour colour = banner.is_fault() ? palette.danger_text : palette.caution;
   begin_top_pane("banner", origin, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may cover the scene
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
-  list.AddRectFilled(origin, {origin.x + size.x, origin.y + size.y}, packed(palette.raised));
-  list.AddRectFilled(origin, {origin.x + style.points(5), origin.y + size.y}, packed(colour));
+  const ImVec2 end{origin.x + size.x, origin.y + size.y};
+  list.AddRectFilled(origin, end, packed(palette.pane), style.points(8));
+  list.AddRectFilled(origin, {origin.x + style.points(6), end.y}, packed(colour), style.points(8),
+                     ImDrawFlags_RoundCornersLeft);
+  list.AddRect(origin, end, packed(colour), style.points(8), 0, style.points(1.5f));
   list.PopClipRect();
   warning_sign({origin.x + style.points(18), origin.y + style.points(10)}, colour, style);
-  ImGui::SetCursorPos({style.points(44), style.points(9)});
+  ImGui::SetCursorPos({style.points(text_left_points), style.points(banner_top_points)});
   ImGui::BeginGroup();
-  ImGui::PushTextWrapPos(style.points(44) + banner_text_width(size.x, style, banner));
+  ImGui::PushTextWrapPos(style.points(text_left_points) + banner_text_width(size.x, style, banner));
   text(style.fonts.strong, palette.text, banner.what);
   text(palette.text_quiet, banner.remedy);
   ImGui::PopTextWrapPos();
   ImGui::EndGroup();
-  bool pressed = false;
+  BannerAction pressed = BannerAction::none;
+  const ImVec2 button_size{style.points(button_points), style.points(button_height_points)};
+  const float left = size.x - style.points(button_points + banner_margin_points);
   if (banner.action != BannerAction::none) {
-    ImGui::SetCursorPos({size.x - style.points(button_points + banner_margin_points), style.points(14)});
-    pressed = coloured_button(banner.button.c_str(), colour, banner.is_fault() ? palette.on_danger : palette.on_caution,
-                              {style.points(button_points), style.points(34)});
+    ImGui::SetCursorPos({left, style.points(banner_top_points)});
+    if (primary_button(banner.button.c_str(), style, button_size)) pressed = banner.action;
+  }
+  if (banner.is_fault()) {
+    ImGui::SetCursorPos({left, style.points(banner_top_points + button_height_points + 6)});
+    if (button("Show signals", button_size)) pressed = BannerAction::show_signals;
+    help_on_hover("Show signals", "Shows the signals around the fault. The scope is frozen there.", style);
   }
   end_pane();
   return pressed;

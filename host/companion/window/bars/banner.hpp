@@ -1,4 +1,4 @@
-// The banner below the status bar.
+// The banner over the scene.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace inkwell::window {
 
-enum class BannerAction : std::uint8_t { none, clear_fault, update_firmware, take_over };
+enum class BannerAction : std::uint8_t { none, clear_fault, show_signals, update_firmware, take_over };
 
 struct Banner {
   std::string what;
@@ -23,7 +23,7 @@ struct Banner {
 };
 std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware);
 float banner_height(float width, const Style& style, const Banner& banner);
-/// Returns true if the button was pressed.
-bool draw_banner(ImVec2 origin, ImVec2 size, const Style& style, const Banner& banner);
+/// Returns the action of the pressed button.
+BannerAction draw_banner(ImVec2 origin, ImVec2 size, const Style& style, const Banner& banner);
 
 }  // namespace inkwell::window

@@ -11,7 +11,7 @@ using device::Connection;
 const char* connection_title(const device::SessionStatus& status) {
   switch (status.connection) {
     case Connection::searching: return "Searching for a device";
-    case Connection::connected: return status.is_simulation ? "Connected to a simulation" : "Connected";
+    case Connection::connected: return status.is_simulation ? "Simulated arm" : "Connected";
     case Connection::incompatible: return "Protocol mismatch";
     case Connection::no_permission: return "No permission";
   }
@@ -28,7 +28,7 @@ namespace {
 bool draw_virtual_board_offer(const Style& style, const VirtualBoardOffer& offer) {
   const Palette& palette = *style.palette;
   ImGui::Dummy({0, style.points(4)});
-  const bool asks = coloured_button("Start virtual board", palette.accent, palette.pane, {-1, style.points(32)});
+  const bool asks = primary_button("Start virtual board", style, {-1, style.points(32)});
   wrapped_text(
       offer.problem.empty() ? palette.text_quiet : palette.danger_text,
       offer.problem.empty()
@@ -42,9 +42,7 @@ std::optional<std::string> draw_choice(const Style& style, const DeviceView& vie
   std::optional<std::string> chosen;
   for (const device::Endpoint& endpoint : view.listed) {
     ImGui::Dummy({0, style.points(2)});
-    if (coloured_button(endpoint.serial_number.c_str(), style.palette->accent, style.palette->pane,
-                        {-1, style.points(32)}))
-      chosen = endpoint.serial_number;
+    if (button(endpoint.serial_number.c_str(), {-1, style.points(32)})) chosen = endpoint.serial_number;
   }
   return chosen;
 }

@@ -30,6 +30,10 @@ constexpr auto left_rows = std::to_array<Row>({
     {"Drag the dots next to a number", "Change the number (Shift: faster, Ctrl: slower)"},
     {"Ctrl+Z", "Undo the last change"},
     {"Ctrl+Y, Ctrl+Shift+Z", "Redo the last undone change"},
+    {"Recording", ""},
+    {"Ctrl+R", "Start or stop a recording"},
+    {"Ctrl+M", "Add a mark"},
+    {"Ctrl+S", "Save the last 60 s"},
     {"Keyboard", ""},
     {"Ctrl+Tab, Ctrl+Shift+Tab", "Move to the next or previous part"},
     {"Arrows, Enter", "Select a control, activate a control"},
@@ -50,6 +54,7 @@ constexpr auto right_rows = std::to_array<Row>({
     {"Ctrl+arrows, Page Up, Page Down", "Move the simulated hand"},
     {"1, 2", "Press the buttons of the simulated stylus"},
     {"Plots", ""},
+    {"Ctrl+P", "Pause or resume the plots or the replay"},
     {"Drag, wheel, double click", "Move in time, zoom, resume"},
     {"Shift+arrows", "Move in time, zoom, seek in a replay"},
     {"Drag a cursor, or Ctrl+arrows", "Move the first cursor (with Ctrl+Shift: the second cursor)"},
@@ -72,6 +77,7 @@ void draw_rows(std::span<const Row> rows, const Style& style) {
     return ImGui::GetCursorPosY();
   };
   ImGui::BeginGroup();
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ImGui::GetStyle().ItemSpacing.x, style.points(2)});
   for (const Row& row : rows) {
     if (row.what_happens.empty()) {
       ImGui::SetCursorPosY(ImGui::GetCursorPosY() + style.points(4));
@@ -83,6 +89,7 @@ void draw_rows(std::span<const Row> rows, const Style& style) {
     ImGui::SetCursorPosY(top);
     ImGui::SetCursorPosY(std::max(end, cell(palette.text_quiet, row.what_happens, keys_points, column_points)));
   }
+  ImGui::PopStyleVar();
   ImGui::EndGroup();
 }
 

@@ -19,8 +19,6 @@ namespace {
 
 constexpr std::array<double, 7> speeds{0.01, 0.05, 0.2, 0.5, 1.0, 2.0, 4.0};
 
-constexpr float name_points = 150.0f;
-
 std::string speed_label(double speed) { return fmt::format("{:g} x", speed); }
 
 }  // namespace
@@ -89,12 +87,12 @@ void ReplayBar::draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& 
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(9)});
   begin_pane("replay", origin, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  draw_controls(style);
+  draw_controls(std::max(style.points(100), 0.34f * size.x - style.points(60)), style);
   ImGui::SameLine(0, style.points(14));
   draw_over(style);
   ImGui::SameLine(0, style.points(14));
 
-  const float close_width = style.points(64), time_width = style.points(126), gap = style.points(12);
+  const float close_width = style.points(104), time_width = style.points(126), gap = style.points(12);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float right = origin.x + size.x - style.points(12) - close_width - gap - time_width - gap;
   if (right - corner.x > style.points(40)) draw_track(corner, {right - corner.x, ImGui::GetFrameHeight()}, style);
@@ -103,8 +101,8 @@ void ReplayBar::draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& 
   right_text(style.palette->text_quiet, fmt::format("{:.2f} of {:.2f} s", replay_->position_s(), replay_->duration_s()),
              time_width);
   ImGui::SetCursorScreenPos({right + gap + time_width + gap, corner.y});
-  const bool is_to_be_closed = button("Close", {close_width, 0});
-  help_on_hover("Close", "Closes the replay and shows the device.", style);
+  const bool is_to_be_closed = button("Close replay", {close_width, 0});
+  help_on_hover("Close replay", "Closes the replay and shows the device.", style);
   end_pane();
   if (!is_to_be_closed) return;
   replay_.reset();
@@ -112,14 +110,9 @@ void ReplayBar::draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& 
   scope.restart();
 }
 
-void ReplayBar::draw_controls(const Style& style) {
-  const bool playing = replay_->is_playing();
-  if (toggle_button(playing ? "Pause###play" : "Play###play", playing, style, {style.points(62), 0})) {
-    if (playing)
-      replay_->pause();
-    else
-      replay_->play();
-  }
+void ReplayBar::draw_controls(float name_room, const Style& style) {
+  if (button(replay_->is_playing() ? "Pause###play" : "Play###play", {style.points(62), 0})) toggle_play();
+  help_on_hover("", "Key: Ctrl+P", style);
   ImGui::SameLine();
   ImGui::SetNextItemWidth(style.points(76));
   if (ImGui::BeginCombo("##speed", speed_label(replay_->speed()).c_str())) {
@@ -134,8 +127,10 @@ void ReplayBar::draw_controls(const Style& style) {
   std::string name = name_;
   if (recording.information.simulation) name += " (simulation)";
   if (!recording.complete) name += ", incomplete";
-  text(style.fonts.strong, style.palette->text, fitted(name, style.points(name_points)));
-  if (!recording.remarks.empty())
+  text(style.fonts.strong, style.palette->text, fitted(name, name_room));
+  if (recording.remarks.empty())
+    help_on_hover(name, file_.string(), style);
+  else
     help_on_hover("Ignored content", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
 }
 
@@ -161,8 +156,10 @@ void ReplayBar::draw_over(const Style& style) {
     if (ImGui::BeginCombo("##over", shown.c_str())) {
       text(style.palette->text_quiet, "Align at");
       if (ImGui::Selectable("start", aligned_at_.empty())) align_at({});
-      for (const std::string& mark : recording::common_marks(replay_->recording(), over_->recording()))
+      for (const std::string& mark : recording::common_marks(replay_->recording(), over_->recording())) {
+        need_glyphs(mark);
         if (ImGui::Selectable(mark.c_str(), aligned_at_ == mark)) align_at(mark);
+      }
       ImGui::Separator();
       const bool goes = ImGui::Selectable("Remove overlay");
       note_item("Remove overlay");

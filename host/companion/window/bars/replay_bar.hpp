@@ -29,6 +29,10 @@ class ReplayBar {
   void seek(double position_s) {
     if (replay_) replay_->seek(position_s);
   }
+  void toggle_play() {
+    if (!replay_) return;
+    replay_->is_playing() ? replay_->pause() : replay_->play();
+  }
   bool is_playing() const { return replay_ && replay_->is_playing(); }
 
   /// Call once per frame. Passes the samples since the last call to the scope.
@@ -43,7 +47,7 @@ class ReplayBar {
 
  private:
   void stop_at(const device::Error& error);
-  void draw_controls(const Style& style);
+  void draw_controls(float name_room, const Style& style);
   void draw_over(const Style& style);
   void align_at(const std::string& mark);
   void draw_track(ImVec2 corner, ImVec2 size, const Style& style);

@@ -8,6 +8,7 @@
 
 #include "host/companion/window/device_desk/parameter_editor.hpp"
 #include "host/companion/window/frame/keyboard.hpp"
+#include "host/companion/window/frame/shown_unit.hpp"
 #include "host/companion/window/frame/widgets.hpp"
 
 namespace inkwell::window {
@@ -25,8 +26,9 @@ constexpr float around_rows_points = 150.0f;
 void draw_row(const ReturnedValues::Row& row, float width, const Style& style) {
   const Palette& palette = *style.palette;
   const protocol::ParameterInfo& info = protocol::info(row.parameter);
+  const auto [unit, factor] = shown_unit(info.unit);
   const std::string values =
-      fmt::format("{:.6g}, was {:.6g}{}{}", row.now, row.before, info.unit.empty() ? "" : " ", info.unit);
+      fmt::format("{:.6g}, was {:.6g}{}{}", factor * row.now, factor * row.before, unit.empty() ? "" : " ", unit);
   text(palette.text_quiet, full_label_of(info));
   help_on_hover(info.name, info.help, style);
   ImGui::SameLine();
@@ -67,8 +69,7 @@ ReturnChoice draw_content(const ReturnedValues& values, float room, bool force_i
                        return protocol::info(row.parameter).needs_force_off;
                      });
   ImGui::BeginDisabled(waits);
-  if (coloured_button(count == 1 ? "Restore old value" : "Restore old values", palette.accent, palette.pane, half))
-    choice = ReturnChoice::send;
+  if (primary_button(count == 1 ? "Restore old value" : "Restore old values", style, half)) choice = ReturnChoice::send;
   ImGui::EndDisabled();
   help_on_hover("",
                 waits ? "Switch the force off first. While the force is on, the board refuses some of these values."

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 
 #include "host/companion/window/bars/connection_card.hpp"
 #include "host/companion/window/frame/flow_layout.hpp"
+#include "host/companion/window/frame/inspection.hpp"
 #include "host/companion/window/frame/widgets.hpp"
 
 #include "host/companion/window/bars/gauges.hpp"
@@ -28,10 +30,12 @@ constexpr float gap_points = 8.0f;
 constexpr float stop_points = 100.0f;
 constexpr float force_points = 114.0f;
 constexpr float scope_points = 60.0f;
-constexpr float theme_points = 94.0f;
+constexpr float theme_points = 28.0f;
+constexpr float record_points = 116.0f;
+constexpr float mark_points = 48.0f;
 constexpr float help_points = 28.0f;
-constexpr float buttons_points =
-    stop_points + force_points + scope_points + theme_points + help_points + 5 * gap_points + margin_points;
+constexpr float buttons_points = stop_points + force_points + record_points + scope_points + theme_points +
+                                 help_points + 6 * gap_points + margin_points;
 
 /// Items of the bar, from left to right.
 enum Item : std::size_t {
@@ -44,7 +48,7 @@ enum Item : std::size_t {
   lost_item,
   switches_item
 };
-constexpr std::array<float, 8> item_widths_points{214, 92, 72, 54, 78, 62, 44, 122};
+constexpr std::array<float, 8> item_widths_points{176, 92, 72, 54, 78, 62, 44, 122};
 
 std::vector<FlowPosition> positions_of(float width, const Style& style) {
   std::vector<float> widths;
@@ -69,7 +73,59 @@ bool stop_button(ImVec2 size, const Style& style) {
   return ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::IsMouseHoveringRect(corner, end, false);
 }
 
+// Draws a half-filled circle.
+bool theme_button(ImVec2 size, const Style& style) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const bool is_dark = style.palette == &dark_palette;
+  const bool pressed = button("##theme", size);
+  const ImVec2 centre{corner.x + 0.5f * size.x, corner.y + 0.5f * size.y};
+  const float radius = style.points(6.5f), quarter = 0.5f * std::numbers::pi_v<float>;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddCircle(centre, radius, packed(style.palette->text), 0, style.points(1.5f));
+  list.PathArcTo(centre, radius, -quarter, quarter, 12);
+  list.PathFillConvex(packed(style.palette->text));
+  help_on_hover(is_dark ? "Light theme" : "Dark theme", "Changes the colors of the window.", style);
+  return pressed;
+}
+
 }  // namespace
+
+void StatusBar::draw_recording(ImVec2 corner, const Style& style, const StatusBarInput& input,
+                               StatusBarOutcome& outcome) const {
+  const Palette& palette = *style.palette;
+  const float height = style.points(item_points), width = style.points(record_points), gap = style.points(4);
+  const auto dot = [&](float x, bool is_square) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float y = corner.y + 0.5f * height, half = style.points(4.5f);
+    if (is_square)
+      list.AddRectFilled({x - half, y - half}, {x + half, y + half}, packed(palette.danger_text));
+    else
+      list.AddCircleFilled({x, y}, half, packed(palette.danger_text));
+  };
+  ImGui::SetCursorScreenPos(corner);
+  if (input.recording_clock.empty()) {
+    ImGui::BeginDisabled(!input.recording_waits.empty());
+    outcome.toggle_recording = button("    Record", {width, height});
+    note_item("Record");
+    ImGui::EndDisabled();
+    dot(corner.x + style.points(26), false);
+    help_on_hover("Record",
+                  input.recording_waits.empty()
+                      ? "Starts a recording with the choices of the pane Recording. Key: Ctrl+R"
+                      : input.recording_waits,
+                  style);
+    return;
+  }
+  outcome.mark = button("Mark", {style.points(mark_points), height});
+  help_on_hover("Mark", "Adds a mark to the recording. Key: Ctrl+M", style);
+  const float left = corner.x + style.points(mark_points) + gap;
+  ImGui::SetCursorScreenPos({left, corner.y});
+  outcome.toggle_recording = button(("    " + input.recording_clock + "###Stop recording").c_str(),
+                                    {width - style.points(mark_points) - gap, height});
+  note_item("Stop recording");
+  dot(left + style.points(14), true);
+  help_on_hover("Stop recording", "Stops the recording and completes its file. Key: Ctrl+R", style);
+}
 
 void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
   const bool open = ImGui::BeginPopup("devices");
@@ -169,22 +225,26 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
 
   const bool alive = view.pose.has_value();
   const bool active = alive && protocol::force_is_on(view.state());
-  const bool can_switch_on = alive && view.state() == State::ready && !input.is_replay;
+  const bool can_switch_on = alive && view.state() == State::ready && input.force_waits.empty();
   const ImVec2 force_size = make_room(force_points);
   ImGui::BeginDisabled(!active && !can_switch_on);
-  if (active ? coloured_button("Force is on###force", palette.good, palette.on_good, force_size)
-             : toggle_button("Switch force on###force", can_switch_on, style, force_size)) {
+  if (active          ? coloured_button("Force is on###force", palette.good, palette.on_good, force_size)
+      : can_switch_on ? primary_button("Switch force on###force", style, force_size)
+                      : button("Switch force on###force", force_size)) {
     outcome.switch_force_on = !active;
     outcome.stop |= active;
   }
   ImGui::EndDisabled();
   help_on_hover("Force",
-                input.is_replay ? "Close the replay first. The window shows a recording instead of the arm."
-                                : "While the force is on, walls and programs push the hand. The force rises slowly "
-                                  "after switch-on and drops immediately after switch-off.",
+                !active && !input.force_waits.empty()
+                    ? input.force_waits
+                    : "While the force is on, walls and programs push the hand. The force rises slowly "
+                      "after switch-on and drops immediately after switch-off.",
                 style);
+  make_room(record_points);
+  draw_recording(ImGui::GetCursorScreenPos(), style, input, outcome);
   outcome.toggle_scope = toggle_button("Scope", input.scope_is_shown, style, make_room(scope_points));
-  outcome.toggle_theme = button(style.palette == &dark_palette ? "Light theme" : "Dark theme", make_room(theme_points));
+  outcome.toggle_theme = theme_button(make_room(theme_points), style);
   outcome.help = button("?", make_room(help_points));
   help_on_hover("Keys and mouse", "Lists all keys and mouse actions. F1 also opens this list.", style);
 }

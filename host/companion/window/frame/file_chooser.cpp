@@ -43,7 +43,7 @@ void FileChooser::enter(const fs::path& folder) {
 /// Draws a button for each parent folder.
 void FileChooser::draw_folders(const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(2), style.points(4)});
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(4), style.points(2)});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(4), style.points(4.5f)});
   fs::path folder;
   std::optional<fs::path> wanted;
   for (const fs::path& part : folder_) {
@@ -87,6 +87,7 @@ void FileChooser::draw_entries(const Style& style) {
   if (folder_ != folder_.root_path() && ImGui::Selectable("..", false, ImGuiSelectableFlags_DontClosePopups))
     wanted = folder_.parent_path();
   for (const FolderEntry& entry : listing_.entries) {
+    need_glyphs(entry.name);
     const std::string label = entry.is_folder ? entry.name + "/" : entry.name;
     const bool is_typed = !entry.is_folder && entry.name == typed_;
     ImGui::PushStyleColor(ImGuiCol_Header, packed(palette.accent.with_alpha(70)));
@@ -138,13 +139,12 @@ bool FileChooser::draw_buttons(const Style& style) {
   if (to_be_replaced_) {
     wrapped_text(style.palette->caution,
                  fmt::format("The file {} already exists. Replace the file?", to_be_replaced_->filename().string()));
-    if (coloured_button("Replace", style.palette->danger, style.palette->on_danger, size))
-      chosen_ = std::exchange(to_be_replaced_, std::nullopt);
+    if (grave_button("Replace", style, size)) chosen_ = std::exchange(to_be_replaced_, std::nullopt);
     ImGui::SameLine();
     if (button("Keep file", size) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape))) to_be_replaced_.reset();
     return false;
   }
-  if (coloured_button(question_.button.c_str(), style.palette->accent, style.palette->pane, size)) accept();
+  if (primary_button(question_.button.c_str(), style, size)) accept();
   ImGui::SameLine();
   return button("Cancel", size) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
 }
@@ -164,6 +164,7 @@ std::optional<fs::path> FileChooser::draw(const Style& style) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(question_.endings.empty() ? -1.0f : -style.points(158));
   ImGui::BeginDisabled(to_be_replaced_.has_value());
+  need_glyphs(typed_);
   const bool entered = ImGui::InputTextWithHint("##path", question_.is_new_file ? "file name" : "file name or path",
                                                 &typed_, ImGuiInputTextFlags_EnterReturnsTrue);
   note_item("path");

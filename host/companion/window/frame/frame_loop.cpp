@@ -88,6 +88,7 @@ bool FrameLoop::is_due(const Frame& frame) const {
 }
 
 void FrameLoop::lay_out(Frame& frame) {
+  content_.prepare();
   imgui_.begin();
   if (inspection_) inspection_->begin_frame(display_.corner());
   content_.lay_out(imgui_.size(), frame.now_s);
@@ -123,12 +124,21 @@ void FrameLoop::draw(const Frame& frame) {
     drawn += part.area();
   }
   if (display_.draws_in_software()) mark_.put();
+  if (const auto wanted = content_.wanted_picture()) take_picture(frame, *wanted);
   if (frame.is_last) write_screenshot(options_.screenshot, frame.size.width, frame.size.height);
   // The answer waits until ImGui has applied all earlier events.
   if (!inspection_ || imgui_.has_waiting_events()) return;
   nlohmann::json known = content_.inspect();
   known["drawn_part"] = drawn / frame.picture.window.area();
   if (!inspection_->end_frame(known, frame.size.width, frame.size.height)) display_.close();
+}
+
+void FrameLoop::take_picture(const Frame& frame, const Box& box) {
+  const float scale = static_cast<float>(frame.size.width) / imgui_.size().x;
+  const auto pixels = [scale](float units) { return static_cast<int>(std::lround(units * scale)); };
+  const Box inside = common(box, frame.picture.window);
+  content_.take_picture(read_pixels(pixels(inside.left), frame.size.height - pixels(inside.bottom),
+                                    pixels(inside.right - inside.left), pixels(inside.bottom - inside.top)));
 }
 
 std::vector<Box> FrameLoop::to_be_drawn(const Frame& frame) const {

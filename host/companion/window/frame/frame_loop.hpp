@@ -40,6 +40,8 @@ class FrameContent {
   /// loop calls the function 60 times per second.
   virtual bool needs_frame() const = 0;
 
+  /// Prepares the next frame, before ImGui's NewFrame().
+  virtual void prepare() {}
   /// Lays out all panes between ImGui's NewFrame() and Render().
   virtual void lay_out(ImVec2 size, double now_s) = 0;
   /// Returns true if the laid-out frame contains motion and needs the full frame rate.
@@ -55,6 +57,10 @@ class FrameContent {
   virtual Colour ground() const = 0;
   /// Paints the scene behind the panes. The depth and stencil buffers of the scene area are already clear.
   virtual void paint(const Canvas& canvas) = 0;
+
+  /// Returns the area of a requested picture, in screen coordinates; empty without a request.
+  virtual std::optional<Box> wanted_picture() const { return std::nullopt; }
+  virtual void take_picture(Pixels) {}
 
   /// Returns the state of the frame for an inspection.
   virtual nlohmann::json inspect() const = 0;
@@ -98,6 +104,7 @@ class FrameLoop {
   void lay_out(Frame& frame);
   bool update_evidence(Frame& frame);
   void draw(const Frame& frame);
+  void take_picture(const Frame& frame, const Box& box);
   std::vector<Box> to_be_drawn(const Frame& frame) const;
   void draw_part(const Frame& frame, const Box& box);
   void show(const Frame& frame);

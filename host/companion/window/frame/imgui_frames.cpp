@@ -37,6 +37,15 @@ DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
 
 }  // namespace
 
+void replace_font_atlas(ImFontAtlas* atlas) {
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImFontAtlas* before = ImGui::GetIO().Fonts;
+  before->Locked = false;
+  ImGui::GetIO().Fonts = atlas;
+  IM_DELETE(before);
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 ImGuiFrames::Context::Context() {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed, and the program has a separate settings file

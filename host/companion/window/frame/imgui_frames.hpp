@@ -12,6 +12,9 @@ struct GLFWwindow;
 
 namespace inkwell::window {
 
+/// Draws all later frames with this atlas, and deletes the previous atlas. Call between two frames.
+void replace_font_atlas(ImFontAtlas* atlas);
+
 class ImGuiFrames {
  public:
   explicit ImGuiFrames(GLFWwindow* window);

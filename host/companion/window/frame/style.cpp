@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <thread>
+#include <utility>
 
 #include <imgui_freetype.h>
+
+#include "host/companion/window/frame/font_search.hpp"
+#include "host/companion/window/frame/imgui_frames.hpp"
 
 namespace inkwell::window {
 
@@ -26,11 +32,23 @@ constexpr std::array<FontFiles, 3> font_files{{
 constexpr ImWchar glyph_ranges[] = {0x0020, 0x00FF, 0x0370, 0x03FF, 0x2010, 0x2026, 0x2190, 0x2193, 0x21B6,
                                     0x21BB, 0x2212, 0x2212, 0x25A0, 0x25CF, 0x2713, 0x2717, 0};
 
-ImFont* add_font(const char* file, float pixels) {
+/// Characters of a font file, as ranges for ImGui.
+struct MoreGlyphs {
+  FontChoice font;
+  std::vector<ImWchar> ranges;
+};
+
+ImFont* add_font(ImFontAtlas& atlas, const char* file, float pixels, const std::vector<MoreGlyphs>& more) {
   ImFontConfig configuration;
   configuration.OversampleH = 1;
   configuration.PixelSnapH = true;
-  return ImGui::GetIO().Fonts->AddFontFromFileTTF(file, pixels, &configuration, glyph_ranges);
+  ImFont* font = atlas.AddFontFromFileTTF(file, pixels, &configuration, glyph_ranges);
+  configuration.MergeMode = true;
+  for (const MoreGlyphs& each : more) {
+    configuration.FontNo = each.font.face;
+    atlas.AddFontFromFileTTF(each.font.file.c_str(), pixels, &configuration, each.ranges.data());
+  }
+  return font;
 }
 
 // Sets the same width for all digits, so that a changing number does not move adjacent text.
@@ -50,27 +68,104 @@ void make_digits_tabular(ImFont* font) {
 
 }  // namespace
 
-Fonts load_fonts(float scale) {
-  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  atlas.Clear();
-  atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
-  atlas.FontBuilderFlags = ImGuiFreeTypeBuilderFlags_LightHinting;
+namespace {
+
+/// Returns the main font, or null if no main font is installed.
+const FontFiles* main_font() {
   const auto found = std::ranges::find_if(font_files, [](const FontFiles& files) {
     return std::filesystem::exists(files.regular) && std::filesystem::exists(files.strong);
   });
-  if (found == font_files.end()) {
+  return found == font_files.end() ? nullptr : &*found;
+}
+
+/// Fills an empty atlas.
+Fonts load_fonts(ImFontAtlas& atlas, float scale, const std::vector<MoreGlyphs>& more) {
+  atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
+  atlas.FontBuilderFlags = ImGuiFreeTypeBuilderFlags_LightHinting;
+  const FontFiles* files = main_font();
+  if (files == nullptr) {
     ImFontConfig configuration;
     configuration.SizePixels = std::round(13.0f * scale);
     ImFont* only = atlas.AddFontDefault(&configuration);
     atlas.Build();
     return {only, only, only};
   }
-  const Fonts fonts{add_font(found->regular, std::round(15.0f * scale)),
-                    add_font(found->strong, std::round(15.0f * scale)),
-                    add_font(found->regular, std::round(12.5f * scale))};
+  const Fonts fonts{add_font(atlas, files->regular, std::round(15.0f * scale), more),
+                    add_font(atlas, files->strong, std::round(15.0f * scale), more),
+                    add_font(atlas, files->regular, std::round(12.5f * scale), more)};
   atlas.Build();
   for (ImFont* font : {fonts.body, fonts.strong, fonts.caption}) make_digits_tabular(font);
   return fonts;
+}
+
+std::vector<MoreGlyphs> glyphs_for(const std::vector<Character>& characters) {
+  std::vector<std::filesystem::path> files = installed_fonts(font_folders());
+  if (const FontFiles* main = main_font()) files.insert(files.begin(), main->regular);
+  std::vector<MoreGlyphs> more;
+  for (FontChoice& choice : fonts_for(characters, files)) {
+    std::vector<ImWchar> ranges;
+    for (const Character character : choice.characters) ranges.insert(ranges.end(), {character, character});
+    ranges.push_back(0);
+    more.push_back({std::move(choice), std::move(ranges)});
+  }
+  return more;
+}
+
+}  // namespace
+
+/// A font atlas that a thread prepares.
+struct FontLoader::Next {
+  ImFontAtlas* atlas = IM_NEW(ImFontAtlas)();
+  std::vector<MoreGlyphs> more;  ///< the atlas refers to the ranges
+  Fonts fonts{};
+  std::atomic<bool> is_ready = false;
+  std::jthread thread{};
+
+  ~Next() {
+    if (thread.joinable()) thread.join();
+    if (atlas != nullptr) IM_DELETE(atlas);
+  }
+};
+
+FontLoader::FontLoader(float scale) : scale_(scale) {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  atlas.Clear();
+  fonts_ = load_fonts(atlas, scale, {});
+}
+
+FontLoader::~FontLoader() = default;
+
+bool FontLoader::update() {
+  if (!next_) {
+    if (needed_count() == tried_count_) return false;
+    tried_count_ = needed_count();
+    std::vector<Character> needed = needed_characters();
+    std::erase_if(needed, [](Character character) {
+      for (const ImWchar* range = glyph_ranges; *range != 0; range += 2)
+        if (character >= range[0] && character <= range[1]) return true;
+      return false;
+    });
+    if (needed.empty() || main_font() == nullptr) return false;
+    next_ = std::make_unique<Next>();
+    next_->thread = std::jthread([next = next_.get(), characters = std::move(needed), scale = scale_] {
+      next->more = glyphs_for(characters);
+      next->fonts = load_fonts(*next->atlas, scale, next->more);
+      next->is_ready = true;
+    });
+    return false;
+  }
+  if (!next_->is_ready) return false;
+  next_->thread.join();
+  replace_font_atlas(std::exchange(next_->atlas, nullptr));
+  fonts_ = next_->fonts;
+  next_.reset();
+  return true;
+}
+
+std::size_t FontLoader::missing() const {
+  return static_cast<std::size_t>(std::ranges::count_if(needed_characters(), [this](Character character) {
+    return fonts_.body->FindGlyphNoFallback(character) == nullptr;
+  }));
 }
 
 ImVec4 vector(Colour colour) { return ImGui::ColorConvertU32ToFloat4(packed(colour)); }
@@ -79,7 +174,7 @@ void apply_theme(const Palette& palette, float scale) {
   ImGuiStyle style;
   style.WindowPadding = {14, 12};
   style.FramePadding = {9, 5};
-  style.ItemSpacing = {8, 7};
+  style.ItemSpacing = {8, 9};  // with the text height, a row of a list is 24 points high
   style.ItemInnerSpacing = {7, 4};
   style.WindowRounding = 0;
   style.ChildRounding = 6;
@@ -92,7 +187,7 @@ void apply_theme(const Palette& palette, float scale) {
   style.WindowBorderSize = 0;
   style.ChildBorderSize = 0;
   style.PopupBorderSize = 1;
-  style.FrameBorderSize = 0;
+  style.FrameBorderSize = 1;
   style.IndentSpacing = 14;
   style.ScaleAllSizes(scale);
   style.AntiAliasedLinesUseTex = true;
@@ -103,7 +198,7 @@ void apply_theme(const Palette& palette, float scale) {
   set(ImGuiCol_WindowBg, palette.pane);
   set(ImGuiCol_ChildBg, palette.pane.with_alpha(0));
   set(ImGuiCol_PopupBg, palette.pane);
-  set(ImGuiCol_Border, palette.line);
+  set(ImGuiCol_Border, palette.outline);
   set(ImGuiCol_FrameBg, palette.raised);
   set(ImGuiCol_FrameBgHovered, palette.raised_hover);
   set(ImGuiCol_FrameBgActive, palette.raised_active);

@@ -1,8 +1,13 @@
 // Fonts, colors and spacing for ImGui.
 #pragma once
 
+#include <cstddef>
+#include <memory>
+#include <vector>
+
 #include <imgui.h>
 
+#include "host/companion/window/frame/glyph_needs.hpp"
 #include "host/companion/window/frame/palette.hpp"
 
 namespace inkwell::window {
@@ -21,8 +26,30 @@ struct Style {
   float points(float count) const { return count * scale; }
 };
 
-/// Loads the first available font: Inter, DejaVu or ImGui's built-in font.
-Fonts load_fonts(float scale);
+/// Loads the first available font: Inter, DejaVu or ImGui's built-in font. Later adds the characters of displayed texts
+/// from all installed fonts, in a separate thread, so that no frame waits.
+class FontLoader {
+ public:
+  explicit FontLoader(float scale);
+  ~FontLoader();
+  FontLoader(const FontLoader&) = delete;
+  FontLoader& operator=(const FontLoader&) = delete;
+
+  const Fonts& fonts() const { return fonts_; }
+  /// Call before ImGui::NewFrame(). Returns true if the fonts have changed.
+  bool update();
+  /// Returns true while a font atlas with more characters is being prepared.
+  bool is_loading() const { return next_ != nullptr; }
+  /// Number of displayed characters that no loaded font contains.
+  std::size_t missing() const;
+
+ private:
+  struct Next;
+  float scale_;
+  Fonts fonts_;
+  std::size_t tried_count_ = 0;  ///< number of recorded characters at the last search
+  std::unique_ptr<Next> next_;
+};
 
 void apply_theme(const Palette& palette, float scale);
 

@@ -12,7 +12,7 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr float handle_points = 15.0f;
+constexpr float handle_points = 24.0f;
 constexpr float fast = 10.0f;
 constexpr float fine = 0.1f;
 
@@ -33,6 +33,7 @@ void draw_ground(ImVec2 corner, ImVec2 end, float part, bool is_typed_in, const 
   const float rounding = ImGui::GetStyle().FrameRounding;
   const bool hovered = ImGui::IsMouseHoveringRect(corner, end) && ImGui::IsWindowHovered();
   list.AddRectFilled(corner, end, packed(hovered ? palette.raised_hover : palette.raised), rounding);
+  if (!is_typed_in) list.AddRect(corner, end, packed(palette.outline), rounding);
   if (is_typed_in) {
     list.AddRect(corner, end, packed(palette.accent), rounding, 0, style.points(1.5f));
     return;
@@ -68,7 +69,9 @@ void ValueFields::follow_typing(const char* id, float value, const ValueRange& r
   std::string shown = range.text_of(value);
   ImGui::SetNextItemWidth(width);
   ImGui::PushStyleColor(ImGuiCol_FrameBg, ImVec4{0, 0, 0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0.0f);
   ImGui::InputText(id, is_typed_in(field) ? &typing_->text : &shown, ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   if (ImGui::IsItemActivated()) left_ = std::exchange(typing_, Typing{field, shown, shown});
   if (!ImGui::IsItemDeactivated()) return;

@@ -11,6 +11,7 @@ namespace inkwell::window {
 
 void text(Colour colour, std::string_view content) {
   note_text(content);
+  need_glyphs(content);
   ImGui::PushStyleColor(ImGuiCol_Text, packed(colour));
   ImGui::TextUnformatted(content.data(), content.data() + content.size());
   ImGui::PopStyleColor();
@@ -35,6 +36,7 @@ void right_text(Colour colour, std::string_view content, float width) {
 }
 
 std::string fitted(std::string_view content, float width, ImFont* font) {
+  need_glyphs(content);
   if (font == nullptr) font = ImGui::GetFont();
   const auto width_of = [font](std::string_view part) {
     constexpr float without_end = 1e4f;
@@ -70,6 +72,7 @@ void same_line_if_room(float width) {
 
 void help_on_hover(std::string_view title, std::string_view help, const Style& style) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsItemActive()) return;
+  if (ImGui::GetIO().WantTextInput) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(11), style.points(9)});
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(style.points(300));
@@ -81,6 +84,7 @@ void help_on_hover(std::string_view title, std::string_view help, const Style& s
 }
 
 bool button(const char* label, ImVec2 size) {
+  need_glyphs(label);
   const bool pressed = ImGui::Button(label, size);
   note_item(label);
   return pressed;
@@ -104,9 +108,84 @@ bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec
   return pressed;
 }
 
+bool grave_button(const char* label, const Style& style, ImVec2 size) {
+  return coloured_button(label, style.palette->raised, style.palette->danger_text, size);
+}
+
+bool primary_button(const char* label, const Style& style, ImVec2 size) {
+  return coloured_button(label, style.palette->accent, style.palette->pane, size);
+}
+
+namespace {
+
+// Draws a line at the lower edge of the last item.
+void underline_item(Colour colour, const Style& style) {
+  const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+  const float margin = style.points(6), thickness = style.points(2.5f);
+  ImGui::GetWindowDrawList()->AddRectFilled({corner.x + margin, end.y - thickness - style.points(1)},
+                                            {end.x - margin, end.y - style.points(1)}, packed(colour));
+}
+
+}  // namespace
+
 bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size) {
-  if (on) return coloured_button(label, style.palette->accent, style.palette->pane, size);
-  return button(label, size);
+  if (!on) return button(label, size);
+  const bool pressed = coloured_button(label, style.palette->raised_active, style.palette->text, size);
+  underline_item(style.palette->accent, style);
+  return pressed;
+}
+
+bool tab_button(const char* label, bool is_selected, const Style& style, ImVec2 size, bool hides_label) {
+  const Palette& palette = *style.palette;
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0.0f);
+  ImGui::PushStyleColor(ImGuiCol_Button, packed(palette.pane.with_alpha(0)));
+  ImGui::PushStyleColor(ImGuiCol_Text,
+                        packed((is_selected ? palette.text : palette.text_quiet).with_alpha(hides_label ? 0 : 255)));
+  const bool pressed = button(label, size);
+  ImGui::PopStyleColor(2);
+  ImGui::PopStyleVar();
+  if (is_selected) underline_item(palette.accent, style);
+  return pressed;
+}
+
+namespace {
+
+bool draw_message(const char* name, ImVec2 position, float pivot_y, float width, Colour colour,
+                  std::string_view message, const Style& style) {
+  ImGui::SetNextWindowPos(position, ImGuiCond_Always, {0.0f, pivot_y});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, style.points(6));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, style.points(1.5f));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(10), style.points(8)});
+  ImGui::PushStyleColor(ImGuiCol_Border, packed(colour));
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  wrapped_text(style.palette->text, message);
+  const bool is_clicked = ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  note_area("message", ImGui::GetWindowPos(),
+            {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
+  ImGui::End();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar(3);
+  return is_clicked;
+}
+
+}  // namespace
+
+bool message_below_item(const char* name, Colour colour, std::string_view message, const Style& style) {
+  const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+  ImGui::GetWindowDrawList()->AddRect(corner, end, packed(colour), ImGui::GetStyle().FrameRounding, 0, style.points(2));
+  const ImGuiWindow& pane = *ImGui::GetCurrentWindow()->RootWindow;
+  const float margin = style.points(10);
+  return draw_message(name, {pane.Pos.x + margin, end.y + style.points(4)}, 0.0f, pane.Size.x - 2 * margin, colour,
+                      message, style);
+}
+
+bool message_at_bottom(const char* name, float bottom, Colour colour, std::string_view message, const Style& style) {
+  const ImGuiWindow& pane = *ImGui::GetCurrentWindow()->RootWindow;
+  const float margin = style.points(10);
+  return draw_message(name, {pane.Pos.x + margin, bottom}, 1.0f, pane.Size.x - 2 * margin, colour, message, style);
 }
 
 bool begin_combo(const char* label, std::string_view shown, float width, ImGuiComboFlags flags) {
@@ -135,8 +214,13 @@ void end_pane() { ImGui::End(); }
 float splitter(const char* name, ImVec2 origin, ImVec2 size, bool vertical, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2{1, 1});
-  begin_pane(name, origin, size, ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::InvisibleButton("handle", size);
+  // The sensitive area is wider than the drawn line.
+  const float more = std::max(0.0f, 0.5f * (style.points(target_points) - (vertical ? size.x : size.y)));
+  const ImVec2 around{vertical ? more : 0.0f, vertical ? 0.0f : more};
+  const ImVec2 sensitive{size.x + 2 * around.x, size.y + 2 * around.y};
+  begin_pane(name, {origin.x - around.x, origin.y - around.y}, sensitive,
+             ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::InvisibleButton("handle", sensitive);
   note_item("handle");
   const bool lively = ImGui::IsItemHovered() || ImGui::IsItemActive();
   if (lively) ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);

@@ -8,6 +8,9 @@
 
 namespace inkwell::window {
 
+/// Smallest width and height of an item that the mouse operates (WCAG 2.2, 2.5.8).
+inline constexpr float target_points = 24.0f;
+
 void text(Colour colour, std::string_view content);
 void text(ImFont* font, Colour colour, std::string_view content);
 void wrapped_text(Colour colour, std::string_view content);
@@ -29,7 +32,7 @@ bool is_dialog_open();
 /// Starts a new line if the current line has less than `width` left.
 void same_line_if_room(float width);
 
-/// Shows a tooltip while the mouse hovers over the last item.
+/// Shows a tooltip while the mouse hovers over the last item. While the user types text, no tooltip covers the fields.
 void help_on_hover(std::string_view title, std::string_view help, const Style& style);
 
 /// An ImGui button with a name for inspections.
@@ -38,8 +41,20 @@ bool button(const char* label, ImVec2 size = {0, 0});
 bool quiet_button(const char* label, const Style& style);
 /// A button in a custom color, such as the stop button.
 bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec2 size);
-/// A button with a visible on/off state.
+/// A button for an action that loses data. The text is red, because only STOP has a red fill.
+bool grave_button(const char* label, const Style& style, ImVec2 size);
+/// The button for the next action of the user. At most one button of a pane is a primary button.
+bool primary_button(const char* label, const Style& style, ImVec2 size = {0, 0});
+/// A button with a visible on/off state. A line under the text marks the state "on".
 bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size = {0, 0});
+/// A tab without a frame. A line under the text marks the selected tab. With `hides_label`, the caller draws the text.
+bool tab_button(const char* label, bool is_selected, const Style& style, ImVec2 size, bool hides_label = false);
+
+/// Marks the last item with an outline and shows a message below the item, in front of all panes. Other items do not
+/// move. Returns true if the user clicks the message.
+bool message_below_item(const char* name, Colour colour, std::string_view message, const Style& style);
+/// Shows a message in front of the lower end of the current window. Returns true if the user clicks the message.
+bool message_at_bottom(const char* name, float bottom, Colour colour, std::string_view message, const Style& style);
 
 /// Calls ImGui::BeginCombo() with this width. An ellipsis replaces the end of long text.
 bool begin_combo(const char* label, std::string_view shown, float width, ImGuiComboFlags flags = 0);

@@ -63,7 +63,14 @@ bool FaultForm::draw(const Style& style) {
   entered |= draw_number("Duration", "duration", "until healed", "s",
                          "Time until the fault heals automatically, in board time.", typed_.for_s, style);
   if (entered) take_keyboard();  // back to the first field, for the next fault
-  if (coloured_button("Inject", style.palette->accent, style.palette->pane, {-1, 0})) entered = true;
+  const std::string_view missing = missing_input(typed_);
+  ImGui::BeginDisabled(!missing.empty());
+  if (missing.empty() ? primary_button("Inject", style, {-1, 0}) : button("Inject", {-1, 0})) entered = true;
+  ImGui::EndDisabled();
+  if (!missing.empty()) {
+    help_on_hover("Inject", missing, style);
+    entered = false;
+  }
   ImGui::Dummy({0, style.points(4)});
   ImGui::PopStyleVar();
   return entered;

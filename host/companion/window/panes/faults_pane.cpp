@@ -108,7 +108,8 @@ void FaultsPane::take(const FaultInjector::News& news) {
   gone_.clear();
   if (const auto* answer = std::get_if<device::Injections>(&news)) log_.take(*answer);
   if (const auto* injection = std::get_if<device::Injection>(&news)) log_.add(*injection);
-  if (const auto* refusal = std::get_if<FaultInjector::Refusal>(&news)) refusal_ = refusal->sentence;
+  if (const auto* refusal = std::get_if<FaultInjector::Refusal>(&news))
+    refusal_ = with_readable_name(refusal->sentence);
 }
 
 void FaultsPane::follow(const PaneNews&) {
@@ -195,7 +196,8 @@ void FaultsPane::draw_logged(const LoggedInjection& logged, const Style& style) 
   ImGui::PushID(static_cast<int>(logged.injection.number));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ImGui::GetStyle().ItemSpacing.x, style.points(2)});
   ImGui::AlignTextToFramePadding();
-  text(style.fonts.strong, is_over ? palette.text_quiet : palette.text, logged.injection.fault);
+  text(style.fonts.strong, is_over ? palette.text_quiet : palette.text, readable_name(logged.injection.fault));
+  help_on_hover(logged.injection.fault, "Name in commands and files.", style);
   if (!is_over) {
     const float width = style.points(52);
     ImGui::SameLine();
@@ -221,7 +223,8 @@ void FaultsPane::draw_noticed(const LoggedInjection& logged, const Style& style)
   if (logged.noticed) {
     const auto& [noticed, after_s] = *logged.noticed;
     const auto when = after_s ? fmt::format(", after {}", duration_text(*after_s)) : std::string();
-    wrapped_text(palette.caution, fmt::format("Reported fault: {}{}", protocol::info(noticed).name, when));
+    wrapped_text(palette.caution,
+                 fmt::format("Reported fault: {}{}", readable_name(protocol::info(noticed).name), when));
   } else if (logged.phase != InjectionPhase::to_come && !log_.waits_for_answer()) {
     const bool in_fault = desk_.view().state() == protocol::State::fault;
     wrapped_text(palette.text_quiet,
@@ -293,7 +296,9 @@ bool FaultsPane::draw_title(protocol::InjectionPart part, const Style& style) {
   const bool holds_wanted = chosen_ && chosen_is_to_be_seen_ && info(chosen_->typed().fault).part == part;
   if (!search_.empty() || holds_wanted) ImGui::SetNextItemOpen(true);
   ImGui::PushFont(style.fonts.strong);
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0.0f);
   const bool is_open = ImGui::CollapsingHeader(std::string(title_of(part)).c_str());
+  ImGui::PopStyleVar();
   note_item(title_of(part));
   ImGui::PopFont();
   return is_open;
@@ -304,7 +309,7 @@ void FaultsPane::draw_row(InjectedFault fault, const Style& style) {
   const bool is_chosen = chosen_ && chosen_->typed().fault == fault;
   ImGui::Indent(style.points(12));
   if (is_chosen) ImGui::PushStyleColor(ImGuiCol_Text, packed(style.palette->accent));
-  if (ImGui::Selectable(name.c_str(), is_chosen)) {
+  if (ImGui::Selectable(fmt::format("{}###{}", readable_name(name), name).c_str(), is_chosen)) {
     if (is_chosen) {
       chosen_.reset();
     } else {

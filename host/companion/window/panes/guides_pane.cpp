@@ -51,6 +51,9 @@ class GuidesPane final : public Pane {
   /// Reserves the scope stream while the guide needs signals.
   PaneStream stream() const override { return {signals_, false}; }
   bool is_moving() const override { return is_running(); }
+  std::string why_force_waits() const override {
+    return is_running() ? "A guide runs and decides about the currents. Finish or cancel the guide first." : "";
+  }
 
  private:
   void start(guides::Guide guide);
@@ -311,7 +314,7 @@ void GuidesPane::draw_buttons(const Style& style) {
   const ImVec2 half{0.5f * (ImGui::GetContentRegionAvail().x - gap), 0};
   if (!guide_->is_over()) {
     ImGui::BeginDisabled(!guide_->takes_confirmation());
-    if (coloured_button("Confirm", style.palette->accent, style.palette->pane, half)) guide_->confirm();
+    if (primary_button("Confirm", style, half)) guide_->confirm();
     ImGui::EndDisabled();
     ImGui::SameLine();
     if (button("Cancel", half)) cancel();
@@ -326,7 +329,7 @@ void GuidesPane::draw_buttons(const Style& style) {
   const bool applicable = guide_->phase() == Phase::finished && !guide_->findings().proposals.empty() &&
                           (guide_->applied() == guides::Applied::no || guide_->applied() == guides::Applied::refused);
   ImGui::BeginDisabled(!applicable || !desk_.view().connected());
-  if (coloured_button("Apply", style.palette->accent, style.palette->pane, half)) {
+  if (primary_button("Apply", style, half)) {
     auto to_device = port();
     guide_->apply(to_device);
   }

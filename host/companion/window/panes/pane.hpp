@@ -65,6 +65,22 @@ struct PaneFrame {
   bool scope_is_free = true;  ///< no pane has reserved the scope stream
 };
 
+/// Actions of the keys and of the top bar on recordings.
+class RecordingControls {
+ public:
+  virtual ~RecordingControls() = default;
+  /// Returns the reason why no recording can start; empty if a recording can start.
+  virtual std::string why_recording_waits(bool scope_is_free) const = 0;
+  /// Returns the duration of the running recording, such as "0:12"; empty without a recording.
+  virtual std::string recording_clock() const = 0;
+  /// Starts or stops a recording. A new recording includes `scope_signals`.
+  virtual void toggle_recording(const std::vector<protocol::Signal>& scope_signals) = 0;
+  /// Adds a mark with a number to the log, to the running recording and to the captured minute.
+  virtual void set_mark() = 0;
+  /// Saves the captured minute to a new file.
+  virtual void save_captured() = 0;
+};
+
 class Pane {
  public:
   Pane() = default;
@@ -86,6 +102,12 @@ class Pane {
   /// Returns additional signals for the scope stream while the pane is shown. The signals are not streamed if a pane
   /// has reserved the stream. PaneNews contains the samples.
   virtual std::vector<protocol::Signal> shown_signals() const { return {}; }
+  /// Returns the signals that the pane always needs in addition to the signals of the scope.
+  virtual std::vector<protocol::Signal> background_signals() const { return {}; }
+  /// Returns the reason why the force must stay off; empty if the pane permits the force.
+  virtual std::string why_force_waits() const { return {}; }
+  /// Returns null for all panes except the pane that records.
+  virtual RecordingControls* recording_controls() { return nullptr; }
   /// Reserves the scope stream, for example during a guide or a recording.
   virtual PaneStream stream() const { return {}; }
   /// Returns a short state text for the tab; empty if the pane is idle.

@@ -43,10 +43,9 @@ void draw_running(const std::string& running, ImVec2 corner, ImVec2 end, bool is
   const float width = style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x;
   const ImVec2 left{0.5f * (corner.x + end.x - width), 0.5f * (corner.y + end.y)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddCircleFilled({left.x + style.points(4), left.y}, style.points(4),
-                       packed(is_shown ? palette.pane : palette.danger_text));
+  list.AddCircleFilled({left.x + style.points(4), left.y}, style.points(4), packed(palette.danger_text));
   list.AddText({left.x + style.points(dot_points), left.y - 0.5f * ImGui::GetFontSize()},
-               packed(is_shown ? palette.pane : palette.text), running.c_str());
+               packed(is_shown ? palette.text : palette.text_quiet), running.c_str());
   note_text(running);
 }
 
@@ -54,10 +53,8 @@ bool draw_tab(const Pane& pane, bool is_shown, float width, const Style& style) 
   const float room = width - style.points(8);
   const std::string label = fmt::format("{}##tab", fitted(pane.title(), room));
   const std::string running = pane.running();
-  if (running.empty()) return toggle_button(label.c_str(), is_shown, style, {width, 0});
-  const Palette& palette = *style.palette;
-  const bool pressed = coloured_button(label.c_str(), is_shown ? palette.accent : palette.raised,
-                                       palette.pane.with_alpha(0), {width, 0});
+  if (running.empty()) return tab_button(label.c_str(), is_shown, style, {width, 0});
+  const bool pressed = tab_button(label.c_str(), is_shown, style, {width, 0}, true);
   draw_running(running, ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), is_shown, style);
   help_on_hover(pane.title(), "The recording continues while another pane is shown.", style);
   return pressed;
@@ -95,7 +92,26 @@ std::string PaneColumn::show(std::size_t tab) {
 PaneStream PaneColumn::stream(const std::vector<protocol::Signal>& scope_signals) const {
   for (const auto& pane : panes_)
     if (PaneStream stream = pane->stream(); !stream.signals.empty()) return stream;
-  return {joined(scope_signals, panes_[shown_]->shown_signals())};
+  std::vector<protocol::Signal> signals = joined(scope_signals, panes_[shown_]->shown_signals());
+  for (const auto& pane : panes_) signals = joined(std::move(signals), pane->background_signals());
+  return {signals};
+}
+
+std::string PaneColumn::why_force_waits() const {
+  for (const auto& pane : panes_)
+    if (std::string why = pane->why_force_waits(); !why.empty()) return why;
+  return {};
+}
+
+RecordingControls& PaneColumn::recording_controls() {
+  const auto found =
+      std::ranges::find_if(panes_, [](const auto& pane) { return pane->recording_controls() != nullptr; });
+  return *(*found)->recording_controls();
+}
+
+std::string PaneColumn::show(std::string_view title) {
+  const auto found = std::ranges::find(panes_, title, [](const auto& pane) { return pane->title(); });
+  return show(static_cast<std::size_t>(found - panes_.begin()));
 }
 
 bool PaneColumn::is_moving() const {

@@ -19,10 +19,18 @@ class PaneColumn {
   /// otherwise an empty text.
   std::string show(std::size_t tab);
 
-  /// Returns the stream of the first pane with a reservation. Without a reservation, returns the signals of the scope
-  /// and of the shown pane, up to the size limit of the stream.
+  /// Returns the stream of the first pane with a reservation. Without a reservation, returns the signals of the scope,
+  /// of the shown pane and of all panes in the background, up to the size limit of the stream.
   PaneStream stream(const std::vector<protocol::Signal>& scope_signals) const;
   bool is_moving() const;
+  /// Returns the reason of the first pane that requires the force to stay off; empty if all panes permit the force.
+  std::string why_force_waits() const;
+  RecordingControls& recording_controls();
+  bool scope_is_free(const std::vector<protocol::Signal>& scope_signals) const {
+    return stream(scope_signals).feeds_scope;
+  }
+  /// Shows the pane with this title. Returns the pane's name for the keyboard focus.
+  std::string show(std::string_view title);
 
  private:
   /// Returns the height of the tabs.

@@ -16,19 +16,21 @@
 
 #include "host/client/recording/recorder.hpp"
 #include "host/client/recording/signals.hpp"
+#include "host/companion/window/frame/background_task.hpp"
 #include "host/companion/window/frame/file_chooser.hpp"
 #include "host/companion/window/frame/imgui_versions.hpp"
 #include "host/companion/window/frame/inspection.hpp"
 #include "host/companion/window/frame/widgets.hpp"
 #include "host/companion/window/panes/pane.hpp"
+#include "host/companion/window/panes/sample_capture.hpp"
 
 namespace inkwell::window {
 namespace {
 
 using recording::RecorderStatus;
 
-std::string name_from_time() {
-  return fmt::format("inkwell-{:%Y%m%d-%H%M%S}.h5",
+std::string name_from_time(std::string_view kind = "") {
+  return fmt::format("inkwell-{}{:%Y%m%d-%H%M%S}.h5", kind,
                      fmt::localtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
@@ -67,7 +69,7 @@ std::string clock_text(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-class RecordingPane final : public Pane {
+class RecordingPane final : public Pane, public RecordingControls {
  public:
   explicit RecordingPane(const PaneSurroundings& around)
       : desk_(around.desk), replay_(around.replay), starts_with_replay_(around.starts_with_replay) {}
@@ -82,12 +84,25 @@ class RecordingPane final : public Pane {
     return recorder_ ? clock_text(recorder_->status().duration_s) : std::string();
   }
   bool is_shown_at_start() const override { return starts_with_replay_; }
+  /// The captured minute can be replayed.
+  std::vector<protocol::Signal> background_signals() const override { return recording::standard_signals(); }
+  RecordingControls* recording_controls() override { return this; }
+
+  std::string why_recording_waits(bool scope_is_free) const override;
+  std::string recording_clock() const override { return running(); }
+  void toggle_recording(const std::vector<protocol::Signal>& scope_signals) override;
+  void set_mark() override { mark({}); }
+  void save_captured() override;
 
  private:
   enum class Choice : std::uint8_t { standard, path, scope };
 
   void start(const std::vector<protocol::Signal>& scope_signals);
   void stop();
+  /// Adds a mark. Without a text, the text has the next number.
+  void mark(const std::string& text);
+  void capture(const std::vector<device::ScopeSamples>& samples);
+  void draw_captured(const Style& style);
   void follow_recording(const std::vector<device::ScopeSamples>& samples);
   void follow_replay_wish();
   void draw_choice(const PaneFrame& frame);
@@ -114,6 +129,14 @@ class RecordingPane final : public Pane {
   FileChooser chooser_;
   std::optional<std::filesystem::path> may_be_replaced_;
   std::string replay_error_;
+  SampleCapture capture_;
+  std::optional<device::Information> captured_device_;  ///< device of the captured samples
+  bool captured_simulation_ = false;
+  protocol::ParameterSet captured_parameters_{};
+  BackgroundTask capture_writer_;
+  std::string captured_file_;    ///< last file of a captured minute
+  std::string capture_problem_;  ///< error of the last save; empty: no error
+  int marks_ = 0;                ///< number of marks without a text
   struct ReplayWish {
     std::filesystem::path file;
     bool asks;  ///< waiting for the user's permission to switch the force off
@@ -128,7 +151,10 @@ void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
   signals_ = choice_ == Choice::standard ? recording::standard_signals()
              : choice_ == Choice::path   ? recording::signal_path()
                                          : std::vector<protocol::Signal>{};
+  // The order of the background stream avoids a gap at the start of the recording.
+  const auto in_stream_order = joined(scope_signals, signals_);
   signals_ = joined(std::move(signals_), scope_signals);
+  if (in_stream_order.size() == signals_.size()) signals_ = in_stream_order;
   written_file_ = file_.empty() ? name_from_time() : typed_path(std::filesystem::current_path(), file_).string();
   if (!std::filesystem::path(written_file_).has_extension()) written_file_ += ".h5";
   try {
@@ -154,8 +180,55 @@ void RecordingPane::stop() {
 }
 
 void RecordingPane::follow(const PaneNews& news) {
+  capture(news.samples);
   if (recorder_) follow_recording(news.samples);
   follow_replay_wish();
+  if (const auto result = capture_writer_.take_result()) capture_problem_ = *result;
+}
+
+void RecordingPane::capture(const std::vector<device::ScopeSamples>& samples) {
+  const DeviceView& view = desk_.view();
+  if (view.status.information && view.parameters) {
+    if (captured_device_ && captured_device_->serial_number != view.status.information->serial_number) capture_.clear();
+    captured_device_ = view.status.information;
+    captured_simulation_ = view.status.is_simulation;
+    captured_parameters_ = *view.parameters;
+  }
+  for (const auto& each : samples) capture_.add(each);
+}
+
+void RecordingPane::save_captured() {
+  if (capture_.is_empty() || !captured_device_ || capture_writer_.is_running()) return;
+  CapturedRecording task{.file = std::filesystem::current_path() / name_from_time("last-60-s-"),
+                         .information = {},
+                         .blocks = capture_.blocks(),
+                         .marks = {}};
+  task.information = recording::describe(*captured_device_, captured_parameters_, task.blocks.back()->signals, "",
+                                         captured_simulation_);
+  const device::EventLog& events = desk_.events();
+  for (std::uint64_t number = events.begin(); number < events.end(); ++number)
+    if (const device::Event& event = events[number];
+        event.at_periods && *event.at_periods >= task.blocks.front()->first_period)
+      task.marks.push_back({*event.at_periods, event.text, event.kind, event.clock_utc});
+  std::ranges::stable_sort(task.marks, {}, &recording::Mark::period);
+  captured_file_ = task.file.string();
+  capture_problem_.clear();
+  capture_writer_.start([task = std::move(task)] { return write_captured(task); });
+}
+
+std::string RecordingPane::why_recording_waits(bool scope_is_free) const {
+  const DeviceView& view = desk_.view();
+  if (!view.connected() || !view.status.information || !view.parameters)
+    return "A recording needs a device. Plug in a device.";
+  return scope_is_free ? "" : "A guide uses the scope. Finish or cancel the guide first.";
+}
+
+void RecordingPane::toggle_recording(const std::vector<protocol::Signal>& scope_signals) {
+  recorder_ ? stop() : start(scope_signals);
+}
+
+void RecordingPane::mark(const std::string& text) {
+  desk_.mark(text.empty() ? fmt::format("mark {}", ++marks_) : text);  // the recording receives all events
 }
 
 void RecordingPane::follow_recording(const std::vector<device::ScopeSamples>& samples) {
@@ -188,6 +261,7 @@ void RecordingPane::draw(const PaneFrame& frame) {
     draw_progress(style);
   else
     draw_choice(frame);
+  draw_captured(style);
   ImGui::Dummy({0, style.points(10)});
   text(style.fonts.strong, style.palette->text, "Replay");
   draw_replay(style);
@@ -195,15 +269,13 @@ void RecordingPane::draw(const PaneFrame& frame) {
 
 void RecordingPane::draw_choice(const PaneFrame& frame) {
   const Style& style = frame.style;
-  const DeviceView& view = desk_.view();
   const Palette& palette = *style.palette;
-  const bool connected = view.connected() && view.status.information && view.parameters;
-  wrapped_text(palette.text_quiet, !connected ? "A recording needs a device. Plug in a device."
-                                   : !frame.scope_is_free
-                                       ? "A guide uses the scope. Finish or cancel the guide first."
-                                       : "Records every control period and the parameters as HDF5 (.h5) or CSV.");
+  const std::string waits = why_recording_waits(frame.scope_is_free);
+  wrapped_text(palette.text_quiet,
+               waits.empty() ? "Records every control period and the parameters as HDF5 (.h5) or CSV." : waits);
   const float button_width = style.points(74);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);
+  need_glyphs(file_);
   ImGui::InputTextWithHint("##file", "default: date and time", &file_);
   note_item("file");
   help_on_hover("File",
@@ -226,7 +298,7 @@ void RecordingPane::draw_choice(const PaneFrame& frame) {
   int chosen = static_cast<int>(choice_);
   if (ImGui::Combo("##signals", &chosen, choices, 3)) choice_ = static_cast<Choice>(chosen);
   help_on_hover("Signals", "The recording always includes the signals of the scope.", style);
-  ImGui::BeginDisabled(!connected || !frame.scope_is_free);
+  ImGui::BeginDisabled(!waits.empty());
   if (record_button(style)) start(frame.scope_signals);
   ImGui::EndDisabled();
   if (!start_error_.empty()) wrapped_text(palette.danger_text, start_error_);
@@ -248,17 +320,39 @@ void RecordingPane::draw_progress(const Style& style) {
   ImGui::Dummy({0, style.points(4)});
   const float button_width = style.points(64);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);
+  need_glyphs(mark_text_);
   const bool entered =
       ImGui::InputTextWithHint("##mark", "text of the mark", &mark_text_, ImGuiInputTextFlags_EnterReturnsTrue);
   note_item("mark text");
   ImGui::SameLine();
   if (button("Mark", {button_width, 0}) || entered) {
-    recorder_->mark(mark_text_.empty() ? fmt::format("mark {}", recorder_->status().marks + 1) : mark_text_);
+    mark(mark_text_);
     mark_text_.clear();
   }
   help_on_hover("Mark",
                 "Adds a mark to the recording. Parameter changes, force on/off and faults are marked automatically.",
                 style);
+}
+
+void RecordingPane::draw_captured(const Style& style) {
+  const Palette& palette = *style.palette;
+  ImGui::Dummy({0, style.points(2)});
+  const bool can_save = !capture_.is_empty() && captured_device_ && !capture_writer_.is_running();
+  ImGui::BeginDisabled(!can_save);
+  if (button("Save last 60 s", {-1, style.points(30)})) save_captured();
+  ImGui::EndDisabled();
+  help_on_hover(
+      "Save last 60 s",
+      "The window always retains the last 60 s. This button saves all signals and events to a new file in the working "
+      "folder. Key: Ctrl+S",
+      style);
+  if (captured_file_.empty()) return;
+  if (capture_writer_.is_running())
+    wrapped_text(palette.text_quiet, fmt::format("Writing {}.", captured_file_));
+  else if (capture_problem_.empty())
+    wrapped_text(palette.good, fmt::format("{} is complete.", captured_file_));
+  else
+    wrapped_text(palette.danger_text, capture_problem_);
 }
 
 void RecordingPane::draw_numbers(const Style& style, const RecorderStatus& status) {
@@ -287,6 +381,8 @@ void RecordingPane::draw_replay(const Style& style) {
          .endings = {".h5", ".csv"},
          .suggestion = written_file_});
   }
+  const bool has_capture = !captured_file_.empty() && capture_problem_.empty() && !capture_writer_.is_running();
+  if (has_capture && button("Replay last minute", {-1, style.points(30)})) replay(captured_file_);
   if (!recorder_ && last_status_ && button("Replay last recording", {-1, style.points(30)})) replay(written_file_);
   draw_question(style);
   if (!replay_error_.empty()) wrapped_text(style.palette->danger_text, replay_error_);
@@ -306,8 +402,7 @@ void RecordingPane::draw_question(const Style& style) {
   if (!ImGui::BeginPopupModal(question, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove)) return;
   text(style.fonts.strong, style.palette->text, "The force is on");
   wrapped_text(style.palette->text_quiet, "A replay hides the arm in this window, so the force must be off.");
-  const bool agrees =
-      coloured_button("Stop and replay", style.palette->accent, style.palette->pane, {style.points(180), 0});
+  const bool agrees = primary_button("Stop and replay", style, {style.points(180), 0});
   ImGui::SameLine();
   const bool cancels = button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
   if (agrees) {

@@ -6,6 +6,7 @@
 
 #include "host/companion/window/device_desk/stored_values.hpp"
 #include "host/companion/window/frame/imgui_versions.hpp"
+#include "host/companion/window/frame/shown_unit.hpp"
 #include "host/companion/window/frame/widgets.hpp"
 
 namespace inkwell::window {
@@ -26,9 +27,10 @@ std::string list_of(const std::vector<Parameter>& waiting, const DeviceView& vie
   std::string lines;
   for (std::size_t i = 0; i < std::min(waiting.size(), listed_maximum); ++i) {
     const auto& row = protocol::info(waiting[i]);
-    lines +=
-        fmt::format("{}{}: {}{}{}, stored: {}", i == 0 ? "" : "\n", full_label_of(row), (*view.parameters)[waiting[i]],
-                    row.unit.empty() ? "" : " ", row.unit, view.status.store->at_next_start[waiting[i]]);
+    const auto [unit, factor] = shown_unit(row.unit);
+    lines += fmt::format("{}{}: {:.6g}{}{}, stored: {:.6g}", i == 0 ? "" : "\n", full_label_of(row),
+                         factor * (*view.parameters)[waiting[i]], unit.empty() ? "" : " ", unit,
+                         factor * view.status.store->at_next_start[waiting[i]]);
   }
   if (waiting.size() > listed_maximum) lines += fmt::format("\nand {} more", waiting.size() - listed_maximum);
   return lines;
@@ -55,8 +57,8 @@ Answer draw_question(const Question& question, bool has_device, const Style& sty
   wrapped_text(palette.text_quiet, question.explanation);
   ImGui::Dummy({0, style.points(4)});
   auto answer = Answer::none;
-  if (coloured_button(question.agree, question.is_grave ? palette.danger : palette.accent,
-                      question.is_grave ? palette.on_danger : palette.pane, {style.points(180), 0}))
+  if (question.is_grave ? grave_button(question.agree, style, {style.points(180), 0})
+                        : primary_button(question.agree, style, {style.points(180), 0}))
     answer = Answer::yes;
   ImGui::SameLine();
   const bool cancels = button("Cancel", {style.points(100), 0});
@@ -82,8 +84,7 @@ void store_button(DeviceDesk& desk, ImVec2 size, const Style& style) {
   constexpr const char* label = "Store on board";
   const bool works = is_needed && waits.empty();
   ImGui::BeginDisabled(!works);
-  if (works ? coloured_button(label, style.palette->accent, style.palette->pane, size) : button(label, size))
-    desk.session().store_parameters();
+  if (works ? primary_button(label, style, size) : button(label, size)) desk.session().store_parameters();
   ImGui::EndDisabled();
   help_on_hover(label,
                 works       ? "Stores all values permanently, including the calibration."

@@ -2,21 +2,26 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "host/client/device/parameter_file.hpp"
 #include "host/companion/window/device_desk/stored_values.hpp"
 #include "host/companion/window/frame/file_chooser.hpp"
 #include "host/companion/window/frame/inspection.hpp"
+#include "host/companion/window/frame/shown_unit.hpp"
 #include "host/companion/window/frame/value_field.hpp"
 #include "host/companion/window/frame/widgets.hpp"
 #include "host/companion/window/panes/pane.hpp"
+#include "host/companion/window/panes/refusal_text.hpp"
 
 #include "host/companion/window/panes/store_bar.hpp"
 
@@ -29,7 +34,7 @@ using protocol::ParameterKind;
 namespace {
 
 constexpr float unit_points = 46.0f;
-constexpr float reset_points = 20.0f;
+constexpr float reset_points = 26.0f;
 constexpr float rows_indent_points = 20.0f;  // aligns a row with the title text, which follows an arrow
 
 std::array<const char*, 2> choice_names(Parameter parameter) {
@@ -39,18 +44,21 @@ std::array<const char*, 2> choice_names(Parameter parameter) {
 }
 
 std::string help_of(const protocol::ParameterInfo& info) {
-  return fmt::format("{}\n\nRange {} to {}{}{}, default {}.\nName in files: {}", info.help, info.minimum, info.maximum,
-                     info.unit.empty() ? "" : " ", info.unit, info.default_value, info.name);
+  return fmt::format("{}\n{}, default {:g}. In files: {}", info.help, range_text(info),
+                     shown_unit(info.unit).factor * info.default_value, info.name);
 }
 
-constexpr std::string_view editing_help =
-    "Click the number to type a new number. Enter sends the new number, and Escape restores the old number. Drag the "
-    "dots to change the number (Shift: ten times faster, Ctrl: ten times slower).";
+/// Converts a displayed value to the unit of the parameter. Removes rounding errors of the conversion.
+float in_unit(const protocol::ParameterInfo& info, float shown) {
+  const double factor = static_cast<double>(shown_unit(info.unit).factor);
+  return factor == 1.0 ? shown : *device::parse_number(fmt::format("{:.7g}", static_cast<double>(shown) / factor));
+}
 
 ValueRange range_of(const protocol::ParameterInfo& info) {
-  return {.minimum = info.minimum,
-          .maximum = info.maximum,
-          .decimals = decimals_of(info),
+  const float factor = shown_unit(info.unit).factor;
+  return {.minimum = factor * info.minimum,
+          .maximum = factor * info.maximum,
+          .decimals = std::max(0, decimals_of(info) - static_cast<int>(std::lround(std::log10(factor)))),
           .logarithmic = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f};
 }
 
@@ -90,11 +98,17 @@ class TuningPane final : public Pane {
 
   void draw_heading(const PaneFrame& frame);
   void draw_presets(const PaneFrame& frame);
-  void draw_messages(const PaneFrame& frame);
+  void draw_messages(const PaneFrame& frame, float bottom);
+  /// Shows an error of this parameter below its field.
+  void draw_field_error(Parameter parameter, const PaneFrame& frame);
+  /// Returns the refusal of the device, unless the user has closed the message.
+  std::string refusal() const;
   void draw_group(std::string_view group, const PaneFrame& frame);
   void draw_row(Parameter parameter, const PaneFrame& frame);
   void draw_choice(Parameter parameter, const std::string& label, float width, const PaneFrame& frame);
   void draw_number(Parameter parameter, const std::string& label, float width, const PaneFrame& frame);
+  /// Forgets the messages about earlier edits. The device's next refusal is about `parameter`, if any.
+  void note_edit(std::optional<Parameter> parameter);
   /// Sends the typed value, or shows an error.
   void take_typed(Parameter parameter, const std::string& label, const std::string& typed, const PaneFrame& frame);
   void draw_file_dialog(const PaneFrame& frame);
@@ -111,8 +125,15 @@ class TuningPane final : public Pane {
   ValueFields fields_;
   FileTask task_ = FileTask::load;
   FileChooser chooser_;
-  std::vector<std::string> messages_;  ///< about the last file or the last typed value
+  std::vector<std::string> messages_;  ///< about the last file
   bool message_is_error_ = false;
+  struct FieldError {
+    Parameter parameter;
+    std::string sentence;
+  };
+  std::optional<FieldError> typing_error_;
+  std::optional<Parameter> last_edited_;  ///< the device refuses at most this parameter
+  std::string closed_refusal_;            ///< the user has closed this message
 };
 
 void TuningPane::follow(const PaneNews& news) {
@@ -121,7 +142,7 @@ void TuningPane::follow(const PaneNews& news) {
 
 void TuningPane::load(const std::filesystem::path& file, ParameterEditor& editor, double now_s) {
   file_ = file;
-  messages_.clear();
+  note_edit(std::nullopt);
   try {
     const device::ParameterFile loaded = device::load_parameters(file);
     editor.apply("load " + file.filename().string(), loaded.changes, now_s);
@@ -187,8 +208,10 @@ void TuningPane::draw_presets(const PaneFrame& frame) {
     const bool on = editor.known() && std::ranges::all_of(preset.changes, [&](const ParameterChange& change) {
                       return editor.shown(change.first) == change.second;
                     });
-    if (toggle_button(std::string(preset.name).c_str(), on, style, {width, 0}))
+    if (toggle_button(std::string(preset.name).c_str(), on, style, {width, 0})) {
+      note_edit(std::nullopt);
       editor.apply(std::string(preset.name), preset.changes, frame.now_s);
+    }
     help_on_hover(preset.name, preset.help, style);
     ImGui::SameLine();
   }
@@ -196,21 +219,40 @@ void TuningPane::draw_presets(const PaneFrame& frame) {
     std::vector<ParameterChange> changes;
     for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
       changes.emplace_back(static_cast<Parameter>(i), protocol::known_parameters()[i].default_value);
+    note_edit(std::nullopt);
     editor.apply("all defaults", changes, frame.now_s);
   }
   help_on_hover("Defaults", "Sets every parameter to its default. You can undo this change.", style);
 }
 
-void TuningPane::draw_messages(const PaneFrame& frame) {
-  const Style& style = frame.style;
-  ImGui::PushFont(style.fonts.caption);
-  const std::string refusal = frame.is_replay
-                                  ? "These parameters are from the recording. Close the replay to tune the device."
-                                  : desk_.view().refusal.value_or("");
-  if (!refusal.empty()) wrapped_text(style.palette->caution, refusal);
-  for (const std::string& message : messages_)
-    wrapped_text(message_is_error_ ? style.palette->caution : style.palette->text_quiet, message);
-  ImGui::PopFont();
+std::string TuningPane::refusal() const {
+  const std::string refusal = desk_.view().refusal.value_or("");
+  return refusal == closed_refusal_ ? std::string() : refusal_text(refusal);
+}
+
+void TuningPane::draw_messages(const PaneFrame& frame, float bottom) {
+  const Palette& palette = *frame.style.palette;
+  if (!messages_.empty()) {
+    const std::string all = fmt::format("{}", fmt::join(messages_, "\n"));
+    if (message_at_bottom("tuning message", bottom, message_is_error_ ? palette.caution : palette.outline, all,
+                          frame.style))
+      messages_.clear();
+  }
+  const std::string refused = frame.is_replay ? std::string() : refusal();
+  if (refused.empty() || last_edited_) return;
+  if (message_at_bottom("tuning refusal", bottom, palette.caution, refused, frame.style))
+    closed_refusal_ = desk_.view().refusal.value_or("");
+}
+
+void TuningPane::draw_field_error(Parameter parameter, const PaneFrame& frame) {
+  const Palette& palette = *frame.style.palette;
+  if (typing_error_ && typing_error_->parameter == parameter) {
+    if (message_below_item("tuning message", palette.caution, typing_error_->sentence, frame.style))
+      typing_error_.reset();
+  } else if (const std::string refused = refusal(); last_edited_ == parameter && !frame.is_replay && !refused.empty()) {
+    if (message_below_item("tuning message", palette.caution, refused, frame.style))
+      closed_refusal_ = desk_.view().refusal.value_or("");
+  }
 }
 
 void TuningPane::draw_choice(Parameter parameter, const std::string& label, float width, const PaneFrame& frame) {
@@ -219,36 +261,58 @@ void TuningPane::draw_choice(Parameter parameter, const std::string& label, floa
   ImGui::SetNextItemWidth(width);
   if (ImGui::Combo("##value", &choice, names.data(), static_cast<int>(names.size()))) {
     const ParameterChange change{parameter, static_cast<float>(choice)};
+    note_edit(parameter);
     frame.editor.apply(label, {&change, 1}, frame.now_s);
   }
+  note_item(protocol::info(parameter).name);
   help_on_hover(label, help_of(protocol::info(parameter)), frame.style);
+  draw_field_error(parameter, frame);
 }
 
 void TuningPane::draw_number(Parameter parameter, const std::string& label, float width, const PaneFrame& frame) {
   ParameterEditor& editor = frame.editor;
   const protocol::ParameterInfo& info = protocol::info(parameter);
-  const ValueEdit edit =
-      fields_.draw("##value", std::string(info.name), editor.shown(parameter), range_of(info), width, frame.style);
-  if (edit.drag_begins) editor.begin_step(label);
+  const float factor = shown_unit(info.unit).factor;
+  const ValueEdit edit = fields_.draw("##value", std::string(info.name), factor * editor.shown(parameter),
+                                      range_of(info), width, frame.style);
+  if (edit.drag_begins) {
+    editor.begin_step(label);
+    note_edit(parameter);
+  }
   if (edit.dragged_to) {
-    const ParameterChange change{parameter, *edit.dragged_to};
+    const ParameterChange change{parameter, in_unit(info, *edit.dragged_to)};
     editor.edit({&change, 1}, frame.now_s);
   }
   if (edit.drag_ends) editor.end_step();
   if (edit.typed) take_typed(parameter, label, *edit.typed, frame);
-  help_on_hover(label, fmt::format("{}\n\n{}", help_of(info), editing_help), frame.style);
+  help_on_hover(label, help_of(info), frame.style);
+  draw_field_error(parameter, frame);
+}
+
+void TuningPane::note_edit(std::optional<Parameter> parameter) {
+  last_edited_ = parameter;
+  typing_error_.reset();
+  messages_.clear();
+  closed_refusal_.clear();
 }
 
 void TuningPane::take_typed(Parameter parameter, const std::string& label, const std::string& typed,
                             const PaneFrame& frame) {
-  messages_.clear();
-  try {
-    const ParameterChange change{parameter, device::parse_value(parameter, typed)};
+  note_edit(parameter);
+  const protocol::ParameterInfo& info = protocol::info(parameter);
+  const auto number = device::parse_number(typed);
+  const float value = number ? in_unit(info, *number) : 0.0f;
+  const bool is_whole = info.kind == ParameterKind::real || value == std::round(value);
+  if (number && std::isfinite(value) && value >= info.minimum && value <= info.maximum && is_whole) {
+    const ParameterChange change{parameter, value};
     frame.editor.apply(label, {&change, 1}, frame.now_s);
-  } catch (const device::Error& error) {
-    messages_ = {fmt::format("{} {} keeps its old value.", error.what(), label)};
-    message_is_error_ = true;
+    return;
   }
+  const bool has_comma = typed.find(',') != std::string::npos;
+  const std::string problem = number ? "" : fmt::format("`{}` is not a number. ", typed);
+  const char* remedy = has_comma ? " Use a decimal point and no commas." : is_whole ? "" : " Enter a whole number.";
+  typing_error_ = {parameter, fmt::format("{}{}: {}.{} The field keeps its old value.", problem, full_label_of(info),
+                                          range_text(info), remedy)};
 }
 
 void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
@@ -284,15 +348,19 @@ void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
 
   ImGui::SameLine(0, style.points(6));
   ImGui::AlignTextToFramePadding();
-  text(style.fonts.caption, palette.text_quiet, info.unit);
+  text(style.fonts.caption, palette.text_quiet, shown_unit(info.unit).name);
   if (changed) {
     ImGui::SameLine();
     ImGui::SetCursorPosX(left + width - style.points(reset_points - 4));
     if (reset_button(style)) {
       const ParameterChange change{parameter, info.default_value};
+      note_edit(parameter);
       editor.apply(label, {&change, 1}, frame.now_s);
     }
-    help_on_hover("", fmt::format("Restores the default, {} {}", info.default_value, info.unit), style);
+    help_on_hover("",
+                  fmt::format("Restores the default, {:g} {}", shown_unit(info.unit).factor * info.default_value,
+                              shown_unit(info.unit).name),
+                  style);
   }
   ImGui::PopID();
 }
@@ -311,10 +379,11 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
   ImGui::Dummy({0, style.points(1)});
   ImGui::PushFont(style.fonts.strong);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(5)});
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0.0f);
   const bool open = ImGui::CollapsingHeader((title + "###" + std::string(group)).c_str(),
                                             often_used ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   note_item(group);
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
   ImGui::PopFont();
   if (changed > 0) {
     ImGui::PushFont(style.fonts.caption);
@@ -325,8 +394,8 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
   }
   if (!open) return;
   ImGui::Indent(style.points(rows_indent_points));
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(4)});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(4.5f)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(3)});
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
     if (protocol::known_parameters()[i].group == group) draw_row(static_cast<Parameter>(i), frame);
   ImGui::PopStyleVar(2);
@@ -358,7 +427,9 @@ void TuningPane::draw(const PaneFrame& frame) {
   draw_heading(frame);
   ImGui::BeginDisabled(!frame.editor.known());
   draw_presets(frame);
-  draw_messages(frame);
+  if (frame.is_replay)
+    wrapped_text(frame.style.palette->caution,
+                 "These parameters are from the recording. Close the replay to tune the device.");
   not_stored_ = frame.is_replay ? std::vector<Parameter>{} : not_stored(desk_.view());
   const float store_height = frame.is_replay ? 0.0f : store_bar_.height(ImGui::GetContentRegionAvail().x, frame.style);
   if (ImGui::BeginChild("parameters", {0, -store_height}, false, ImGuiWindowFlags_NavFlattened)) {
@@ -369,7 +440,9 @@ void TuningPane::draw(const PaneFrame& frame) {
       draw_group(group, frame);
     }
   }
+  const float list_bottom = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y;
   ImGui::EndChild();
+  draw_messages(frame, list_bottom);
   ImGui::EndDisabled();
   if (!frame.is_replay) store_bar_.draw(frame.editor, frame.style, frame.now_s);
   draw_file_dialog(frame);

@@ -26,11 +26,15 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
   ImFont* font = style.fonts.caption;
   const float size = font->FontSize;
 
+  const auto shown = [](const AxisRange& range, double factor) {
+    return AxisRange{factor * range.minimum, factor * range.maximum};
+  };
   const std::vector<double> y_ticks =
-      ticks(area.y, std::max(3, static_cast<int>(area.height() / style.points(y_ticks_every_points))));
-  const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : area.y.extent();
+      ticks(shown(area.y, area.y_shown_factor),
+            std::max(3, static_cast<int>(area.height() / style.points(y_ticks_every_points))));
+  const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : area.y_shown_factor * area.y.extent();
   for (double value : y_ticks) {
-    const float y = std::round(area.to_y(value));
+    const float y = std::round(area.to_y(value / area.y_shown_factor));
     list.AddLine({area.minimum.x, y}, {area.maximum.x, y}, packed(palette.plot_grid));
     const std::string label = tick_label(value, y_step);
     const ImVec2 taken = font->CalcTextSizeA(size, 1e4f, 0, label.c_str());
@@ -38,10 +42,10 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
                  packed(palette.text_quiet), label.c_str());
   }
   const std::vector<double> x_ticks =
-      ticks(area.x, static_cast<int>(area.width() / style.points(x_ticks_every_points)));
-  const double x_step = x_ticks.size() > 1 ? x_ticks[1] - x_ticks[0] : area.x.extent();
+      ticks(shown(area.x, area.x_shown_factor), static_cast<int>(area.width() / style.points(x_ticks_every_points)));
+  const double x_step = x_ticks.size() > 1 ? x_ticks[1] - x_ticks[0] : area.x_shown_factor * area.x.extent();
   for (double value : x_ticks) {
-    const float x = std::round(area.to_x(value));
+    const float x = std::round(area.to_x(value / area.x_shown_factor));
     list.AddLine({x, area.minimum.y}, {x, area.maximum.y}, packed(palette.plot_grid));
     if (x_is_logarithm && value != std::round(value)) continue;
     std::string label = x_is_logarithm ? power_label(value) : tick_label(value, x_step);

@@ -20,6 +20,8 @@ struct PlotArea {
   ImVec2 maximum;  ///< bottom right corner
   AxisRange x;
   AxisRange y;
+  double x_shown_factor = 1.0;  ///< the numbers at the axis are the values times this factor
+  double y_shown_factor = 1.0;
 
   float width() const { return maximum.x - minimum.x; }
   float height() const { return maximum.y - minimum.y; }

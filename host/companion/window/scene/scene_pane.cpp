@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -20,7 +21,9 @@ namespace {
 constexpr float radians_per_pixel = 0.008f;
 constexpr float depth_per_wheel_step_m = 0.004f;
 constexpr float probe_grab_points = 22.0f;
-constexpr float wall_grab_points = 9.0f;
+constexpr float wall_grab_points = 12.0f;
+constexpr float tools_points = 46.0f;  // height of the buttons in the upper left corner
+constexpr float sphere_margin_points = 26.0f;
 constexpr std::string_view about_the_proxy =
     "A point on the wall surface. A virtual spring connects the proxy to the probe. The force grows with the distance "
     "between proxy and probe, according to the wall stiffness.";
@@ -329,26 +332,70 @@ void ScenePane::draw_tools(const ScenePaneInput& input) {
   }
 }
 
-bool ScenePane::draw_force_offer(const ScenePaneInput& input) const {
-  if (!input.offers_force || input.is_replay || !input.pose || input.pose->state != protocol::State::ready)
+glm::vec2 ScenePane::card_corner(glm::vec2 card, const ScenePaneInput& input) {
+  const Style& style = input.style;
+  const float margin = style.points(12), footer = style.points(40), tools = style.points(tools_points);
+  const float top = tools + input.covered_height;
+  const std::array<glm::vec2, 4> corners{{{0.5f * (size_.x - card.x), size_.y - card.y - footer},
+                                          {size_.x - card.x - margin, top},
+                                          {margin, top},
+                                          {0.5f * (size_.x - card.x), size_.y - card.y - style.points(4)}}};
+  const auto is_free = [&](glm::vec2 corner) {
+    const float around = style.points(sphere_margin_points);
+    const glm::vec2 sphere = to_glm(on_screen(scene_.probe_m)) - origin_;
+    return sphere.x < corner.x - around || sphere.x > corner.x + card.x + around || sphere.y < corner.y - around ||
+           sphere.y > corner.y + card.y + around;
+  };
+  const glm::vec2 mouse = to_glm(ImGui::GetIO().MousePos);
+  const bool is_used = ImGui::IsAnyMouseDown() || (mouse.x >= card_.left && mouse.x <= card_.right &&
+                                                   mouse.y >= card_.top && mouse.y <= card_.bottom);
+  if (!is_used && !is_free(corners[card_position_])) {
+    const auto better = std::ranges::find_if(corners, is_free);
+    if (better != corners.end()) card_position_ = static_cast<std::size_t>(better - corners.begin());
+  }
+  return origin_ + corners[card_position_];
+}
+
+bool ScenePane::draw_next_step(const ScenePaneInput& input) {
+  if (!input.next_step) {
+    card_ = {};
+    card_position_ = 0;
     return false;
+  }
+  const NextStep& step = *input.next_step;
   const Style& style = input.style;
   const Palette& palette = *style.palette;
-  constexpr const char* why = "The force is off: walls do not push back.";
   const float pad = style.points(12), gap = style.points(14), button_width = style.points(126);
-  const float text_width = ImGui::CalcTextSize(why).x;
-  const ImVec2 size{text_width + gap + button_width + 2 * pad, ImGui::GetFrameHeight() + 2 * style.points(8)};
-  const ImVec2 corner{origin_.x + 0.5f * (size_.x - size.x), origin_.y + size_.y - size.y - style.points(44)};
+  const float room = std::min(style.points(430), size_.x - button_width - gap - 2 * pad - style.points(24));
+  const auto taken_by = [room](ImFont* font, const std::string& content) {
+    return content.empty() ? ImVec2{0, 0} : font->CalcTextSizeA(font->FontSize, 1e4f, room, content.c_str());
+  };
+  const ImVec2 title = taken_by(style.fonts.strong, step.title), reason = taken_by(style.fonts.caption, step.reason);
+  const float line_gap = step.reason.empty() ? 0.0f : style.points(3);
+  const float text_height = title.y + line_gap + reason.y, button_height = ImGui::GetFrameHeight();
+  const float height = std::max(text_height, button_height) + style.points(16);
+  const float text_width = std::max(title.x, reason.x) + 1.0f;
+  const glm::vec2 card{text_width + gap + button_width + 2 * pad, height};
+  const glm::vec2 corner = card_corner(card, input);
+  card_ = {corner.x, corner.y, corner.x + card.x, corner.y + card.y};
+
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 end{corner.x + size.x, corner.y + size.y};
-  list.AddRectFilled(corner, end, packed(palette.pane.with_alpha(235)), style.points(8));
-  list.AddRect(corner, end, packed(scene_.in_contact ? palette.accent : palette.line), style.points(8), 0,
+  list.AddRectFilled({card_.left, card_.top}, {card_.right, card_.bottom}, packed(palette.pane.with_alpha(240)),
+                     style.points(8));
+  list.AddRect({card_.left, card_.top}, {card_.right, card_.bottom},
+               packed(scene_.in_contact ? palette.accent : palette.outline), style.points(8), 0,
                style.points(scene_.in_contact ? 2.0f : 1.0f));
-  ImGui::SetCursorScreenPos({corner.x + pad, corner.y + style.points(8)});
-  ImGui::AlignTextToFramePadding();
-  text(palette.text, why);
-  ImGui::SetCursorScreenPos({corner.x + pad + text_width + gap, corner.y + style.points(8)});
-  return coloured_button("Switch force on", palette.accent, palette.pane, {button_width, 0});
+  note_area("next step", {card_.left, card_.top}, {card_.right, card_.bottom});
+  const float left = corner.x + pad, top = corner.y + 0.5f * (height - text_height);
+  const auto line = [&](ImFont* font, Colour colour, const std::string& content, float y) {
+    if (content.empty()) return;
+    list.AddText(font, font->FontSize, {left, y}, packed(colour), content.c_str(), nullptr, room);
+    note_text(content);
+  };
+  line(style.fonts.strong, palette.text, step.title, top);
+  line(style.fonts.caption, palette.text_quiet, step.reason, top + title.y + line_gap);
+  ImGui::SetCursorScreenPos({left + text_width + gap, corner.y + 0.5f * (height - button_height)});
+  return primary_button(step.button.c_str(), style, {button_width, 0});
 }
 
 void ScenePane::draw_replay_border(const Style& style) const {
@@ -390,10 +437,10 @@ bool ScenePane::draw(ImVec2 origin, ImVec2 size, const ScenePaneInput& input) {
   note_handles();
   draw_labels(input);
   draw_tools(input);
-  const bool asks_for_force = draw_force_offer(input);
+  const bool is_next_step_taken = draw_next_step(input);
   if (input.is_replay) draw_replay_border(input.style);
   end_pane();
-  return asks_for_force;
+  return is_next_step_taken;
 }
 
 void ScenePane::add_to(PictureDigest& digest) const {

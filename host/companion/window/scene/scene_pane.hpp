@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "host/companion/window/device_desk/next_step.hpp"
 #include "host/companion/window/device_desk/parameter_editor.hpp"
 #include "host/companion/window/frame/picture_changes.hpp"
 #include "host/companion/window/frame/picture_digest.hpp"
@@ -22,8 +23,9 @@ struct ScenePaneInput {
   ParameterEditor& editor;
   MouseHand* hand;  ///< null without a virtual board
   double now_s;
-  bool is_replay = false;    ///< pose and parameters are from a recording
-  bool offers_force = true;  ///< false while the user must answer a question first
+  bool is_replay = false;                    ///< pose and parameters are from a recording
+  const std::optional<NextStep>& next_step;  ///< shown on a card
+  float covered_height = 0.0f;               ///< height of the banner below the buttons
 };
 
 class Renderer;
@@ -34,8 +36,8 @@ class ScenePane {
   ScenePane();
   ~ScenePane();
 
-  /// Handles the mouse and draws the labels in front of the picture of draw_scene(). Returns true if the user switches
-  /// the force on.
+  /// Handles the mouse and draws the labels in front of the picture of draw_scene(). Returns true if the user presses
+  /// the button of the next step.
   bool draw(ImVec2 origin, ImVec2 size, const ScenePaneInput& input);
   void draw_scene(const Viewport& viewport, SceneLook look) const;
   /// Adds the state of mouse and simulated hand to the digest.
@@ -63,8 +65,10 @@ class ScenePane {
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
   void draw_tools(const ScenePaneInput& input);
-  /// Draws the button that switches the force on. Returns true if the button was pressed.
-  bool draw_force_offer(const ScenePaneInput& input) const;
+  /// Draws the card with the next step. Returns true if the button was pressed.
+  bool draw_next_step(const ScenePaneInput& input);
+  /// Returns the corner of a card of this size that does not cover the sphere. The card moves only if it must.
+  glm::vec2 card_corner(glm::vec2 card, const ScenePaneInput& input);
   void draw_replay_border(const Style& style) const;
   ImVec2 on_screen(glm::vec3 workspace_point_m) const;
 
@@ -81,6 +85,8 @@ class ScenePane {
   float wall_grab_offset_m_ = 0.0f;
   std::optional<int> marked_wall_;
   bool over_probe_ = false;
+  std::size_t card_position_ = 0;  ///< index into the possible positions of the card
+  Box card_;                       ///< rectangle of the card in the previous frame
 };
 
 }  // namespace inkwell::window

@@ -28,6 +28,7 @@ void LayoutMenu::draw_choices(ScopeLayout& layout) {
   const bool is_changed = layout != layout_named(layout.name, own_);
   const ScopeLayout* chosen = nullptr;
   const auto offer = [&](const ScopeLayout& offered) {
+    need_glyphs(offered.name);
     if (ImGui::Selectable(offered.name.c_str(), offered.name == layout.name)) chosen = &offered;
   };
   for (const ScopeLayout& each : built_in_layouts()) offer(each);
@@ -64,10 +65,10 @@ void LayoutMenu::draw_name(ScopeLayout& layout, const Style& style) {
        renames ? fmt::format("Rename \"{}\"", layout.name) : std::string("Save this layout"));
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
+  need_glyphs(name_);
   const bool entered = ImGui::InputTextWithHint("##name", "layout name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
   if (!refusal_.empty()) wrapped_text(style.palette->caution, refusal_);
-  const bool confirmed =
-      coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->pane, {style.points(100), 0});
+  const bool confirmed = primary_button(renames ? "Rename" : "Save", style, {style.points(100), 0});
   ImGui::SameLine();
   const bool cancelled = button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
   if (cancelled || ((confirmed || entered) && save_name(layout))) {

@@ -1,6 +1,7 @@
-// The menu selects the type and the signals of a plot.
+// The menu selects the type, the y range and the signals of a plot, and saves the plot.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -9,7 +10,10 @@
 
 namespace inkwell::window {
 
-/// Draws the open menu. Returns true if the user removes the plot.
-bool draw_plot_menu(ScopePlot& plot, std::span<const Formula> formulas, bool may_be_removed, const Style& style);
+enum class PlotMenuChoice : std::uint8_t { none, remove, save_png, save_svg, save_csv, copy_statistics };
+
+/// Draws the open menu. Returns the action of the chosen row.
+PlotMenuChoice draw_plot_menu(ScopePlot& plot, std::span<const Formula> formulas, bool may_be_removed,
+                              const Style& style);
 
 }  // namespace inkwell::window

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/companion/window/plot/plot.hpp"
+#include "host/companion/window/scope/plot_export.hpp"
 #include "host/companion/window/scope/scope_layout.hpp"
 #include "host/companion/window/scope/timeline.hpp"
 
@@ -33,14 +34,24 @@ class PlotView {
   PlotView& operator=(const PlotView&) = delete;
 
   const ScopePlot& plot() const { return plot_; }
+  /// Returns the y range of the last frame.
+  AxisRange drawn_y() const { return drawn_y_; }
 
   /// Returns the height of the statistics above the plot.
   virtual float numbers_height(const PlotFrame&) const { return 0.0f; }
   /// Draws the plot into the area and determines the axis ranges. The last ImGui item must cover the area.
   virtual void draw(PlotArea area, PlotFrame& frame) = 0;
+  /// Returns the displayed values for files.
+  virtual PlotTable table(const PlotFrame& frame) const;
 
  protected:
+  /// Replaces the measured range by the fixed range of the plot, if any.
+  AxisRange shown_range(AxisRange measured) const {
+    return plot_.fixed_range ? AxisRange{plot_.fixed_range->minimum, plot_.fixed_range->maximum} : measured;
+  }
+
   const ScopePlot plot_;
+  AxisRange drawn_x_{0, 1}, drawn_y_{0, 1};  ///< in the last frame
 };
 
 std::unique_ptr<PlotView> view_of(const ScopePlot& plot);

@@ -1,8 +1,16 @@
 #include "host/companion/window/scope/scope_pane.hpp"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "host/companion/window/frame/background_task.hpp"
+#include "host/companion/window/frame/file_chooser.hpp"
 #include "host/companion/window/frame/imgui_versions.hpp"
 #include "host/companion/window/frame/inspection.hpp"
 #include "host/companion/window/frame/keyboard.hpp"
@@ -12,6 +20,7 @@
 #include "host/companion/window/scope/cursors.hpp"
 #include "host/companion/window/scope/layout_menu.hpp"
 #include "host/companion/window/scope/legend.hpp"
+#include "host/companion/window/scope/plot_export.hpp"
 #include "host/companion/window/scope/plot_menu.hpp"
 #include "host/companion/window/scope/plot_view.hpp"
 #include "host/companion/window/scope/signal_list.hpp"
@@ -21,7 +30,7 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr float header_points = 24.0f;
+constexpr float header_points = 28.0f;
 constexpr float y_axis_points = 52.0f;
 constexpr float x_axis_points = 21.0f;
 constexpr float plot_minimum_width_points = 230.0f;
@@ -29,14 +38,53 @@ constexpr float plot_minimum_height_points = 92.0f;
 constexpr float title_part_maximum = 0.5f;
 constexpr float title_margin_points = 24.0f;
 
+/// Returns the statistics of all plotted signals as lines with tabs, for a spreadsheet.
+std::string statistics_text_of(const ScopePlot& plot, const PlotFrame& frame) {
+  std::string lines = "signal\tunit\tmean\trms\tdeviation\tminimum\tmaximum\tsamples\n";
+  for (const ScopeSignal& signal : plot.signals) {
+    const SignalSeries* series = frame.timeline.history().find(signal);
+    const Statistics each = series == nullptr
+                                ? no_statistics
+                                : statistics(*series, frame.stretch.first_index(), frame.stretch.last_index());
+    const auto [unit, factor_float] = shown_unit(signal.unit());
+    const auto factor = static_cast<double>(factor_float);
+    lines += fmt::format("{}\t{}\t{:.7g}\t{:.7g}\t{:.7g}\t{:.7g}\t{:.7g}\t{}\n", short_name(signal), unit,
+                         factor * each.mean, factor * each.root_mean_square, factor * each.standard_deviation,
+                         factor * each.minimum, factor * each.maximum, each.count);
+  }
+  return lines;
+}
+
+/// Returns a message about a written file.
+std::string written_text(const std::filesystem::path& file) { return fmt::format("Saved {}.", file.string()); }
+
 }  // namespace
+
+/// State of the export of a plot.
+struct PlotExport {
+  enum class Format : std::uint8_t { png, svg, csv };
+
+  Format format = Format::png;
+  FileChooser chooser;
+  PlotTable table;                               ///< values at the time of the choice
+  std::size_t plot = 0;                          ///< index of the plot
+  std::optional<std::filesystem::path> picture;  ///< picture that is requested from the frame loop
+  int frames_to_wait = 0;                        ///< until the dialog is no longer on the screen
+  std::vector<Box> plots;                        ///< areas of the plots in the last frame
+  BackgroundTask writer;
+  std::filesystem::path file;  ///< last file
+  std::string message;         ///< empty: no message
+  bool is_error = false;
+  double message_since_s = 0.0;
+};
 
 ScopePane::ScopePane(const ScopeSettings& settings)
     : timeline_(settings.span_s, settings.trigger),
       layout_(settings.layout),
       layout_menu_(std::make_unique<LayoutMenu>(settings.own_layouts)),
       cursors_(std::make_unique<Cursors>()),
-      signal_list_(std::make_unique<SignalList>()) {}
+      signal_list_(std::make_unique<SignalList>()),
+      export_(std::make_unique<PlotExport>()) {}
 
 ScopePane::~ScopePane() = default;
 
@@ -53,18 +101,19 @@ std::vector<protocol::Signal> ScopePane::signals() const {
   return result;
 }
 
-void ScopePane::draw(ImVec2 origin, ImVec2 size, const Style& style) {
+void ScopePane::draw(ImVec2 origin, ImVec2 size, const Style& style, bool is_replay) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(8)});
   begin_pane("scope", origin, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   take_keys();
-  draw_controls(style);
+  draw_controls(style, is_replay);
   signal_list_->draw(layout_, style);
   follow_layout();
   timeline_.derive(shown_formulas(layout_));
   PlotFrame frame{style, timeline_, timeline_.stretch(), *cursors_, with_statistics_, judged_end_, has_motion_};
   draw_plots(frame);
   judged_end_ = timeline_.history().end();
+  draw_export(frame, origin.y + size.y - style.points(8));
   end_pane();
 }
 
@@ -78,10 +127,10 @@ void ScopePane::take_keys() {
   cursors_->step(1, key_steps_in_part(with_ctrl | with_shift).right);
 }
 
-void ScopePane::draw_controls(const Style& style) {
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
+void ScopePane::draw_controls(const Style& style, bool is_replay) {
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(4.5f)});
   layout_menu_->draw(layout_, style);
-  draw_toolbar(timeline_, *cursors_, with_statistics_, *signal_list_, style);
+  draw_toolbar(timeline_, *cursors_, with_statistics_, *signal_list_, is_replay, style);
   ImGui::PopStyleVar();
 }
 
@@ -111,9 +160,11 @@ void ScopePane::draw_plots(PlotFrame& frame) {
   const auto rows_in_sight = static_cast<float>(std::clamp(rows_fitting, 1, rows));
   const float height = (room.y - gap.y * (rows_in_sight - 1.0f)) / rows_in_sight;
   std::optional<int> removed;
+  export_->plots.clear();
   for (int i = 0; i < count; ++i) {
     const ImVec2 corner{origin.x + static_cast<float>(i % columns) * (width + gap.x),
                         origin.y + static_cast<float>(i / columns) * (height + gap.y)};
+    export_->plots.push_back({corner.x, corner.y, corner.x + width, corner.y + height});
     if (draw_plot(static_cast<std::size_t>(i), corner, {width, height}, frame)) removed = i;
   }
   if (removed) layout_.plots.erase(layout_.plots.begin() + *removed);
@@ -126,7 +177,8 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFra
   ScopePlot& plot = layout_.plots[index];
   ImGui::PushID(static_cast<int>(index));
   ImGui::SetCursorScreenPos({origin.x, origin.y - style.points(1)});
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(2)});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(4.5f)});
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0.0f);
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->pane));
   ImGui::PushFont(style.fonts.strong);
   const float title_room = std::max(title_part_maximum * size.x,
@@ -134,11 +186,12 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFra
   if (button(fitted(plot.title.empty() ? "Plot" : plot.title, title_room).c_str())) ImGui::OpenPopup("plot menu");
   ImGui::PopFont();
   ImGui::PopStyleColor();
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
   const float title_width = ImGui::GetItemRectSize().x;
   help_on_hover("", "Click to choose the signals and the plot type.", style);
-  const bool is_to_be_removed = draw_plot_menu(plot, layout_.formulas, layout_.plots.size() > 1, style);
-  draw_legend(view.plot(), {origin.x + title_width, origin.y + style.points(4)}, size.x - title_width - style.points(6),
+  const PlotMenuChoice choice = draw_plot_menu(plot, layout_.formulas, layout_.plots.size() > 1, style);
+  carry_out(choice, index, frame);
+  draw_legend(view.plot(), {origin.x + title_width, origin.y + style.points(6)}, size.x - title_width - style.points(6),
               frame);
 
   const float header = style.points(header_points) + view.numbers_height(frame);
@@ -154,7 +207,83 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFra
     draw_hint(view.plot(), area, style);
   }
   ImGui::PopID();
-  return is_to_be_removed;
+  return choice == PlotMenuChoice::remove;
+}
+
+void ScopePane::carry_out(PlotMenuChoice choice, std::size_t index, const PlotFrame& frame) {
+  const ScopePlot& plot = views_[index]->plot();
+  if (choice == PlotMenuChoice::none || choice == PlotMenuChoice::remove) return;
+  if (choice == PlotMenuChoice::copy_statistics) {
+    ImGui::SetClipboardText(statistics_text_of(plot, frame).c_str());
+    export_->message = "Copied the statistics.";
+    export_->is_error = false;
+    export_->message_since_s = ImGui::GetTime();
+    return;
+  }
+  if (export_->writer.is_running()) return;
+  export_->format = choice == PlotMenuChoice::save_png   ? PlotExport::Format::png
+                    : choice == PlotMenuChoice::save_svg ? PlotExport::Format::svg
+                                                         : PlotExport::Format::csv;
+  export_->plot = index;
+  if (export_->format != PlotExport::Format::png) export_->table = views_[index]->table(frame);
+  static constexpr std::array<const char*, 3> endings{".png", ".svg", ".csv"};
+  const char* ending = endings[static_cast<std::size_t>(export_->format)];
+  export_->chooser.ask({.title = "Save the plot",
+                        .help = export_->format == PlotExport::Format::csv
+                                    ? "The file contains all displayed values, with the names and units of recordings."
+                                    : "The file contains the displayed section.",
+                        .button = "Save",
+                        .endings = {ending},
+                        .is_new_file = true,
+                        .suggestion = (plot.title.empty() ? std::string("plot") : plot.title) + ending});
+}
+
+void ScopePane::draw_export(const PlotFrame& frame, float bottom) {
+  PlotExport& state = *export_;
+  const Style& style = frame.style;
+  if (state.frames_to_wait > 0) --state.frames_to_wait;
+  if (const auto chosen = state.chooser.draw(style)) {
+    state.file = *chosen;
+    if (state.format == PlotExport::Format::png) {
+      state.picture = *chosen;
+      state.frames_to_wait = 3;
+    } else {
+      state.writer.start(
+          [file = *chosen, table = std::move(state.table), is_csv = state.format == PlotExport::Format::csv] {
+            return write_file(file, is_csv ? csv_of(table) : svg_of(table, light_palette));
+          });
+    }
+  }
+  if (const auto result = state.writer.take_result()) {
+    state.is_error = !result->empty();
+    state.message = state.is_error ? *result : written_text(state.file);
+    state.message_since_s = ImGui::GetTime();
+  }
+  constexpr double shown_s = 6.0;
+  if (!state.is_error && ImGui::GetTime() - state.message_since_s > shown_s) state.message.clear();
+  if (state.message.empty()) return;
+  if (message_at_bottom("scope message", bottom, state.is_error ? style.palette->caution : style.palette->outline,
+                        state.message, style))
+    state.message.clear();
+}
+
+std::vector<std::pair<std::string, AxisRange>> ScopePane::drawn_ranges() const {
+  std::vector<std::pair<std::string, AxisRange>> ranges;
+  for (const auto& view : views_) ranges.emplace_back(view->plot().title, view->drawn_y());
+  return ranges;
+}
+
+std::optional<Box> ScopePane::wanted_picture() const {
+  if (!export_->picture || export_->frames_to_wait > 0 || export_->plot >= export_->plots.size()) return std::nullopt;
+  return export_->plots[export_->plot];
+}
+
+bool ScopePane::is_saving() const { return export_->picture || export_->writer.is_running(); }
+
+void ScopePane::take_picture(Pixels pixels) {
+  export_->writer.start([file = *std::exchange(export_->picture, std::nullopt), pixels = std::move(pixels)] {
+    return write_png(file, pixels);
+  });
 }
 
 void ScopePane::take_dropped_signal(ScopePlot& plot) {

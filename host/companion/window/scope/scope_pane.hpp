@@ -1,11 +1,17 @@
 // The scope shows time plots, xy plots and spectra of signals.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "host/companion/window/frame/picture_changes.hpp"
+#include "host/companion/window/frame/pixels.hpp"
 #include "host/companion/window/frame/style.hpp"
+#include "host/companion/window/plot/plot_axis.hpp"
 #include "host/companion/window/scope/scope_settings.hpp"
 #include "host/companion/window/scope/timeline.hpp"
 
@@ -15,6 +21,8 @@ class Cursors;
 class LayoutMenu;
 class SignalList;
 class PlotView;
+struct PlotExport;
+enum class PlotMenuChoice : std::uint8_t;
 struct PlotArea;
 struct PlotFrame;
 
@@ -23,14 +31,30 @@ class ScopePane {
   explicit ScopePane(const ScopeSettings& settings);
   ~ScopePane();
 
-  void draw(ImVec2 origin, ImVec2 size, const Style& style);
-  /// Adds samples from the device or a recording. A paused scope discards received samples. `over` contains the samples
-  /// of the overlaid recording, or is null.
+  void draw(ImVec2 origin, ImVec2 size, const Style& style, bool is_replay);
+  /// Adds samples from the device or a recording. `over` contains the samples of the overlaid recording, or is null.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
     timeline_.receive(samples, over);
   }
   /// Clears the history. Call if the next samples do not directly follow the previous samples.
   void restart() { timeline_.restart(); }
+  void toggle_pause() { timeline_.pause(!timeline_.is_paused()); }
+  /// Freezes the plots shortly after this control period.
+  void freeze_at_fault(std::int64_t period) { timeline_.freeze_at(period); }
+  /// Shows the signals around the last fault.
+  void show_fault() { timeline_.show_fault(); }
+  /// Resumes the plots if a fault has frozen them.
+  void resume_after_fault() {
+    if (timeline_.is_frozen_at_fault()) timeline_.pause(false);
+  }
+  /// Returns the area of a plot that must be saved as a picture; empty without a request. The frame must be drawn.
+  std::optional<Box> wanted_picture() const;
+  /// Saves the requested picture in the background.
+  void take_picture(Pixels pixels);
+  /// Returns true while a file is written or a picture is requested.
+  bool is_saving() const;
+  /// Returns the drawn y range of each plot by its title, for inspections.
+  std::vector<std::pair<std::string, AxisRange>> drawn_ranges() const;
   double span_s() const { return timeline_.span_s(); }
 
   /// Returns the signals that the plots and the trigger need.
@@ -45,11 +69,14 @@ class ScopePane {
   void follow_layout();
   /// The arrow keys move and zoom the time range with Shift, and move the cursors with Ctrl.
   void take_keys();
-  void draw_controls(const Style& style);
+  void draw_controls(const Style& style, bool is_replay);
   void draw_plots(PlotFrame& frame);
   /// Adds a signal that the user drops onto the plot.
   void take_dropped_signal(ScopePlot& plot);
   void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
+  /// Carries out an action of the plot's menu, except its removal.
+  void carry_out(PlotMenuChoice choice, std::size_t index, const PlotFrame& frame);
+  void draw_export(const PlotFrame& frame, float bottom);
   /// Returns true if the user removes the plot.
   bool draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFrame& frame);
 
@@ -60,6 +87,7 @@ class ScopePane {
   std::unique_ptr<Cursors> cursors_;
   std::unique_ptr<SignalList> signal_list_;
   bool with_statistics_ = false;
+  std::unique_ptr<PlotExport> export_;
   bool has_motion_ = false;
   std::uint64_t judged_end_ = 0;  ///< end of the history in the previous frame
 };

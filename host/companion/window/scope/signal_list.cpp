@@ -24,7 +24,7 @@ constexpr char payload_type[] = "scope signal";
 void draw_row(const ScopeSignal& signal, ScopeLayout& layout, float width, const Style& style) {
   const std::string name(signal.name());
   const std::string label = fmt::format("{}##{}", fitted(name, width), name);
-  ImGui::Selectable(label.c_str(), false, ImGuiSelectableFlags_AllowDoubleClick, {width, 0});
+  ImGui::Selectable(label.c_str(), false, ImGuiSelectableFlags_AllowDoubleClick, {width, style.points(18)});
   const bool is_double_clicked = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
   note_item(name);
   if (is_double_clicked || is_pressed_by_keyboard()) layout.plots.push_back({PlotKind::time, name, {signal}});
@@ -78,10 +78,11 @@ void SignalList::draw_signals(ScopeLayout& layout, const Style& style) {
   for (const SignalGroup& group : groups) {
     // During a search, the groups are initially open.
     const std::string title = fmt::format("{}###{}{}", group.title, group.title, search_.empty() ? "" : " found");
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(2)});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(6)});
+    ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0.0f);
     const bool is_open = ImGui::CollapsingHeader(title.c_str(), search_.empty() ? 0 : ImGuiTreeNodeFlags_DefaultOpen);
     note_item(group.title);
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
     if (!is_open) continue;
     ImGui::Indent(style.points(17));
     for (const protocol::Signal signal : group.signals)
@@ -162,7 +163,7 @@ void SignalList::draw_dialog(ScopeLayout& layout, const Style& style) {
       refusal.empty() ? fmt::format("Unit of the plot: {}.", formula.unit == "1" ? "none" : formula.unit) : refusal);
   const ImVec2 size{style.points(100), 0};
   ImGui::BeginDisabled(!refusal.empty());
-  bool is_over = coloured_button("Draw signal", style.palette->accent, style.palette->pane, size);
+  bool is_over = primary_button("Draw signal", style, size);
   ImGui::EndDisabled();
   if (is_over) {
     put_formula(layout, formula, asked_about_->name);

@@ -28,11 +28,30 @@ class SpectrumView final : public PlotView {
     compute(frame);
     const double top_dB = decibels(largest_amplitude());
     area.x = {lowest_decade_of_frequency, std::log10(0.5 * sampled_at_Hz)};
-    area.y = y_.update(top_dB - 20.0 * decades_of_amplitude, top_dB, ImGui::GetTime());
+    area.y = shown_range(y_.update(top_dB - 20.0 * decades_of_amplitude, top_dB, ImGui::GetTime()));
+    drawn_y_ = area.y;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_axes(list, area, frame.style, "Hz", "dB " + common_unit(plot_), true);
     for (std::size_t i = 0; i < spectra_.size(); ++i)
       draw_points(list, area, points_of(spectra_[i], area), line_colour(frame.style, i), frame.style);
+  }
+
+  PlotTable table(const PlotFrame&) const override {
+    PlotTable table{.title = plot_.title, .x_name = "frequency_Hz", .y_range = drawn_y_};
+    const auto longest =
+        std::ranges::max_element(spectra_, {}, [](const Spectrum& each) { return each.amplitudes.size(); });
+    if (longest == spectra_.end()) return table;
+    for (std::size_t i = 0; i < longest->amplitudes.size(); ++i)
+      table.x.push_back(longest->resolution_Hz * static_cast<double>(i));
+    table.x_range = {0.0, table.x.empty() ? 1.0 : table.x.back()};
+    for (std::size_t i = 0; i < spectra_.size(); ++i) {
+      if (spectra_[i].amplitudes.size() != longest->amplitudes.size()) continue;
+      table.names.push_back(std::string(plot_.signals[i].name()) + "_dB");
+      std::vector<float>& column = table.columns.emplace_back();
+      for (const double amplitude : spectra_[i].amplitudes)
+        column.push_back(static_cast<float>(decibels(std::max(amplitude, 1e-12))));
+    }
+    return table;
   }
 
  private:

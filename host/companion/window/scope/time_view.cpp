@@ -6,12 +6,15 @@
 
 #include <fmt/format.h>
 
+#include "host/companion/window/frame/inspection.hpp"
+#include "host/companion/window/frame/widgets.hpp"
 #include "host/companion/window/scope/analysis.hpp"
 #include "protocol/reports.hpp"
 
 #include "host/companion/window/scope/legend.hpp"
 #include "host/companion/window/scope/plot_view.hpp"
 #include "host/companion/window/scope/signal_line.hpp"
+#include "host/companion/window/scope/statistics_text.hpp"
 
 namespace inkwell::window {
 
@@ -34,11 +37,16 @@ class TimeView final : public PlotView {
     const auto& [first, last, zero] = frame.stretch;
     const Extremes all = extremes(frame);
     area.x = {(first - zero) / rate_Hz, (last - zero) / rate_Hz};
-    area.y = y_.update(static_cast<double>(all.minimum), static_cast<double>(all.maximum), ImGui::GetTime());
+    area.y =
+        shown_range(y_.update(static_cast<double>(all.minimum), static_cast<double>(all.maximum), ImGui::GetTime()));
+    area.y_shown_factor = static_cast<double>(common_shown_unit(plot_).factor);
+    drawn_x_ = area.x;
+    drawn_y_ = area.y;
     judge_motion(area, frame);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_axes(list, area, frame.style, "s", "");
     draw_trigger_level(list, area, frame);
+    draw_fault(list, area, frame);
     const std::vector<std::size_t> order = drawing_order(plot_.signals);
     for (const std::size_t i : order)
       if (const SignalSeries* series = frame.timeline.history().find_over(plot_.signals[i]))
@@ -89,6 +97,28 @@ class TimeView final : public PlotView {
                  frame.style.points(1));
   }
 
+  // Draws a vertical line at the control period of the last fault.
+  static void draw_fault(ImDrawList& list, const PlotArea& area, const PlotFrame& frame) {
+    const auto fault = frame.timeline.fault();
+    if (!fault) return;
+    const double index = static_cast<double>(*fault);
+    if (index < frame.stretch.first || index > frame.stretch.last) return;
+    const float x = area.to_x((index - frame.stretch.zero) / rate_Hz);
+    const Style& style = frame.style;
+    list.AddLine({x, area.minimum.y}, {x, area.maximum.y}, packed(style.palette->danger_text), style.points(1.5f));
+    // The toolbar does not change, so that no button moves under the pointer.
+    const char* label = frame.timeline.is_frozen_at_fault() ? "Frozen at the fault" : "fault";
+    ImFont* font = style.fonts.caption;
+    const ImVec2 taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, label);
+    const float margin = style.points(4);
+    const float left = x + margin + taken.x <= area.maximum.x ? x + margin : x - margin - taken.x;
+    list.AddRectFilled({left - 2, area.minimum.y}, {left + taken.x + 2, area.minimum.y + taken.y},
+                       packed(style.palette->pane.with_alpha(200)));
+    list.AddText(font, font->FontSize, {left, area.minimum.y}, packed(style.palette->danger_text), label);
+    note_text(label);
+    note_area("fault", {x, area.minimum.y}, {x, area.maximum.y});
+  }
+
   // The mouse wheel zooms, a drag moves the displayed section, and a double click returns to the newest samples.
   static void take_mouse(const PlotArea& area, PlotFrame& frame) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -109,16 +139,25 @@ class TimeView final : public PlotView {
         if (const SignalSeries* series = frame.timeline.history().find(signal);
             series != nullptr && frame.stretch.last > 0.0)
           statistics_.push_back(statistics(*series, frame.stretch.first_index(), frame.stretch.last_index()));
+        else
+          statistics_.push_back(no_statistics);
     }
     ImFont* font = frame.style.fonts.caption;
     float y = area.minimum.y - numbers_height(frame);
     for (std::size_t i = 0; i < statistics_.size(); ++i, y += frame.style.points(statistics_line_points)) {
-      const Statistics& each = statistics_[i];
-      const std::string line = fmt::format("mean {}   rms {}   deviation {}   {} to {}", formatted(each.mean),
-                                           formatted(each.root_mean_square), formatted(each.standard_deviation),
-                                           formatted(each.minimum), formatted(each.maximum));
+      const std::string line =
+          fitted_line(statistics_[i], shown_unit(plot_.signals[i].unit()), area.width(), frame.style.fonts.caption);
       list.AddText(font, font->FontSize, {area.minimum.x, y}, packed(line_colour(frame.style, i)), line.c_str());
+      note_text(line);
     }
+  }
+
+  // Returns the longest text that is not wider than `width`.
+  static std::string fitted_line(const Statistics& each, const ShownUnit& unit, float width, ImFont* font) {
+    const std::vector<std::string> lines = statistics_lines(each, unit);
+    for (const std::string& line : lines)
+      if (font->CalcTextSizeA(font->FontSize, 1e4f, 0, line.c_str()).x <= width) return line;
+    return fitted(lines.back(), width, font);
   }
 
   SteadyRange y_;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "host/companion/window/frame/shown_unit.hpp"
 #include "host/companion/window/frame/widgets.hpp"
 
 namespace inkwell::window {
@@ -57,8 +58,10 @@ void choose_event(TriggerSettings& trigger, const Style& style) {
     trigger.edge = rising ? TriggerEdge::falling : TriggerEdge::rising;
   same_line_if_room(style.points(70));
   ImGui::SetNextItemWidth(style.points(70));
-  ImGui::DragFloat("##level", &trigger.level, 0.01f, 0.0f, 0.0f, "%.3g");
-  help_on_hover("Level", std::string(protocol::info(trigger.signal).unit), style);
+  const auto [unit, factor] = shown_unit(protocol::info(trigger.signal).unit);
+  float level = factor * trigger.level;
+  if (ImGui::DragFloat("##level", &level, 0.01f * factor, 0.0f, 0.0f, "%.3g")) trigger.level = level / factor;
+  help_on_hover("Level", unit, style);
   same_line_if_room(style.points(92));
   float percent = 100.0f * trigger.pre_trigger;
   ImGui::SetNextItemWidth(style.points(92));
@@ -79,15 +82,19 @@ void draw_trigger(Timeline& timeline, const Style& style) {
 
 }  // namespace
 
-void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, SignalList& signals,
+void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, SignalList& signals, bool is_replay,
                   const Style& style) {
   const bool paused = timeline.is_paused();
-  same_line_if_room(style.points(58));
-  if (toggle_button(paused ? "Run###pause" : "Pause###pause", paused, style, {style.points(58), 0}))
-    timeline.pause(!paused);
-  help_on_hover(
-      "", "Pause freezes the plots. Then drag to move in time, turn the wheel to zoom, and double-click to resume.",
-      style);
+  // During a replay, the replay bar has the button Pause.
+  if (paused || !is_replay) {
+    same_line_if_room(style.points(58));
+    if (toggle_button(paused ? "Run###pause" : "Pause###pause", paused, style, {style.points(58), 0}))
+      timeline.pause(!paused);
+    help_on_hover("",
+                  "Pause freezes the plots. Then drag to move in time, turn the wheel to zoom, and double-click to "
+                  "resume. Key: Ctrl+P",
+                  style);
+  }
   draw_span(timeline, style);
   same_line_if_room(style.points(66));
   if (toggle_button("Cursors", cursors.are_shown(), style, {style.points(66), 0})) cursors.toggle();

@@ -10,6 +10,7 @@
 namespace inkwell::window {
 
 /// Draws the controls in the same row as the last item.
-void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, SignalList& signals, const Style& style);
+void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, SignalList& signals, bool is_replay,
+                  const Style& style);
 
 }  // namespace inkwell::window

@@ -29,9 +29,20 @@ class XyView final : public PlotView {
     const std::uint64_t last = std::min(frame.stretch.last_index(), history.end());
     find_ranges(area, history, first, last);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    draw_axes(list, area, frame.style, std::string(plot_.signals.front().unit()), "");
+    draw_axes(list, area, frame.style, std::string(shown_unit(plot_.signals.front().unit()).name), "");
     draw_name_of_x(list, area, frame.style);
     for (const bool over : {true, false}) draw_lane(list, area, frame, over, first, last);
+  }
+
+  PlotTable table(const PlotFrame& frame) const override {
+    PlotTable table = PlotView::table(frame);
+    if (table.columns.size() != plot_.signals.size()) return {.title = plot_.title};
+    table.x_name = table.names.front();
+    table.x.assign(table.columns.front().begin(), table.columns.front().end());
+    table.names.erase(table.names.begin());
+    table.columns.erase(table.columns.begin());
+    table.x_increases = false;
+    return table;
   }
 
  private:
@@ -80,7 +91,11 @@ class XyView final : public PlotView {
     }
     const double now_s = ImGui::GetTime();
     area.x = x_.update(static_cast<double>(x.minimum), static_cast<double>(x.maximum), now_s);
-    area.y = y_.update(static_cast<double>(y.minimum), static_cast<double>(y.maximum), now_s);
+    area.y = shown_range(y_.update(static_cast<double>(y.minimum), static_cast<double>(y.maximum), now_s));
+    area.x_shown_factor = static_cast<double>(shown_unit(plot_.signals.front().unit()).factor);
+    area.y_shown_factor = static_cast<double>(common_shown_unit(plot_).factor);
+    drawn_x_ = area.x;
+    drawn_y_ = area.y;
   }
 
   SteadyRange x_;

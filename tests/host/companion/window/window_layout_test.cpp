@@ -21,42 +21,41 @@ bool overlap(const Rectangle& a, const Rectangle& b) {
 TEST_CASE("no part of the window overlaps another one or leaves the window") {
   for (const float scale : {1.0f, 2.0f})
     for (const ImVec2 points : {ImVec2{900, 560}, {1280, 800}, {1920, 1080}, {2560, 1440}, {3840, 2160}})
-      for (const float part : {0.1f, 0.42f, 0.9f})
-        for (const float banner : {0.0f, 60.0f}) {
-          CAPTURE(points.y);
-          CAPTURE(part);
-          const ImVec2 window{scale * points.x, scale * points.y};
-          WindowSettings settings;
-          settings.scope_part = part;
-          const auto layout =
-              layout_of(window, {100 * scale, banner * scale, banner * scale, 46 * scale}, settings, scale);
-          const std::array parts{layout.status, layout.banner, layout.scene,
-                                 layout.replay, layout.scope,  layout.column};
-          for (std::size_t i = 0; i < parts.size(); ++i) {
-            CHECK(parts[i].origin.x + parts[i].size.x <= window.x + 0.5f);
-            CHECK(parts[i].origin.y + parts[i].size.y <= window.y + 0.5f);
-            for (std::size_t j = 0; j < i; ++j) CHECK_FALSE(overlap(parts[i], parts[j]));
-          }
-          CHECK(layout.scope.size.y >= 0.99f * WindowSettings::scope_height_minimum * scale - 6 * scale);
-          CHECK(layout.scene.size.y > 100 * scale);
+      for (const float part : {0.1f, 0.42f, 0.9f}) {
+        CAPTURE(points.y);
+        CAPTURE(part);
+        const ImVec2 window{scale * points.x, scale * points.y};
+        WindowSettings settings;
+        settings.scope_part = part;
+        const auto layout = layout_of(window, {100 * scale, 46 * scale}, settings, scale);
+        const std::array parts{layout.status, layout.scene, layout.replay, layout.scope, layout.column};
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+          CHECK(parts[i].origin.x + parts[i].size.x <= window.x + 0.5f);
+          CHECK(parts[i].origin.y + parts[i].size.y <= window.y + 0.5f);
+          for (std::size_t j = 0; j < i; ++j) CHECK_FALSE(overlap(parts[i], parts[j]));
         }
+        CHECK(layout.scope.size.y >= 0.99f * WindowSettings::scope_height_minimum * scale - 6 * scale);
+        CHECK(layout.scene.size.y > 100 * scale);
+      }
 }
 
-TEST_CASE("a banner without space covers the scene, and the scene does not move") {
+TEST_CASE("a banner covers the scene below its buttons and no other part") {
   const WindowSettings settings;
-  const auto before = layout_of({1280, 800}, {46, 0, 0, 0}, settings, 1.0f);
-  const auto with_banner = layout_of({1280, 800}, {46, 60, 0, 0}, settings, 1.0f);
-  CHECK(with_banner.scene.origin.y == before.scene.origin.y);
-  CHECK(with_banner.scene.size.y == before.scene.size.y);
-  CHECK(with_banner.banner.origin.y == 46);
-  CHECK(with_banner.banner.size.y == 60);
-  CHECK(layout_of({1280, 800}, {46, 0, 60, 0}, settings, 1.0f).scene.origin.y == before.scene.origin.y + 60);
+  for (const float scale : {1.0f, 2.0f}) {
+    const auto layout = layout_of({900 * scale, 560 * scale}, {92 * scale, 0}, settings, scale);
+    const Rectangle banner = layout.banner(60 * scale);
+    CHECK(banner.size.y == 60 * scale);
+    CHECK(banner.origin.x > layout.scene.origin.x);
+    CHECK(banner.origin.x + banner.size.x < layout.scene.origin.x + layout.scene.size.x);
+    CHECK(banner.origin.y >= layout.scene.origin.y + 40 * scale);
+    CHECK(banner.origin.y + banner.size.y < layout.scene.origin.y + layout.scene.size.y);
+  }
 }
 
 TEST_CASE("a higher window gives scene and scope more in proportion") {
   const WindowSettings settings;
   const auto scope_part = [&](float height) {
-    const auto layout = layout_of({1280, height}, {46, 0, 0, 0}, settings, 1.0f);
+    const auto layout = layout_of({1280, height}, {46, 0}, settings, 1.0f);
     return layout.scope.size.y / (height - 46);
   };
   CHECK(scope_part(800) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
@@ -68,7 +67,7 @@ TEST_CASE("a drag moves the splitter with the mouse from its displayed position"
   WindowSettings settings;
   settings.scope_part = 0.9f;  // more than the available height
   const ImVec2 window{1280, 800};
-  const LayoutNeeds needs{46, 0, 0, 0};
+  const LayoutNeeds needs{46, 0};
   const auto before = layout_of(window, needs, settings, 1.0f);
   drag_scope_splitter(20, before, 1.0f, settings);
   const auto after = layout_of(window, needs, settings, 1.0f);
@@ -79,7 +78,7 @@ TEST_CASE("a window that is small for a while leaves the parts as they were") {
   WindowSettings settings;
   settings.column_width = 500;
   const WindowSettings before = settings;
-  const auto small = layout_of({900, 560}, {46, 0, 0, 0}, settings, 1.0f);
+  const auto small = layout_of({900, 560}, {46, 0}, settings, 1.0f);
   drag_column_splitter(0, {900, 560}, 1.0f, settings);
   drag_scope_splitter(0, small, 1.0f, settings);
   CHECK(settings.column_width == before.column_width);
