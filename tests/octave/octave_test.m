@@ -240,6 +240,29 @@ refused(@() identify_friction(held, picture), 'A hand holds the stylus');
 inkwell_close(held);
 control(ports(2), '{"command": "quit"}');
 
+% A recording holds marks, name and note; losses are counted, and a test pulse is visible.
+file = [tempname(), '.csv'];
+refused(@() inkwell_mark(arm, 'early'), 'No recording is running');
+pulsed = inkwell_open('virtual');
+inkwell_record(pulsed, file, {'current_1_A', 'duty_1'}, 'subject 7', 'left hand');
+inkwell_sleep(pulsed, 0.05);
+inkwell_mark(pulsed, 'pulse');
+inkwell_test_pulse(pulsed, 1, 'V', 1.5, 0.005);
+inkwell_sleep(pulsed, 0.05);
+[samples, lost, is_complete] = inkwell_stop_recording(pulsed);
+assert(samples > 1000);
+assert(is_complete, lost == 0);
+content = fileread(file);
+delete(file);
+assert(! isempty(strfind(content, sprintf("# name = subject 7\n# note = left hand\n"))));
+assert(! isempty(regexp(content, '# mark \d+ mark \S+ = pulse\n')));
+assert(! isempty(regexp(content, '\n[\d.]+,[-\de.]+,0\.0[3-9]')));  % the duty of the pulse
+losses = inkwell_losses(pulsed);
+assert(losses.poses, 0);
+assert(losses.slow_servo_calls, 0);
+refused(@() inkwell_test_pulse(pulsed, 1, 'W', 1, 0.005), 'unit');
+inkwell_close(pulsed);
+
 % A program in a new home folder prints nothing when it exits.
 home = tempname();
 mkdir(home);

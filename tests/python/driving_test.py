@@ -5,11 +5,14 @@
 
 import math
 import os
+import pathlib
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
+import warnings
 
 import inkwell
 from virtual_board import FREE_POINT_M, make_active, wait_until
@@ -47,6 +50,56 @@ class Driving(unittest.TestCase):
         wait_until(self.arm, lambda pose: not pose.feels_program and pose.force_N[0] == 0)
         self.assertEqual(calls, after)
         self.assertFalse(self.arm.servo_is_running)
+
+    def test_a_servo_that_takes_too_long_is_reported(self):
+        calls = 0
+
+        def slow(pose):
+            nonlocal calls
+            calls += 1
+            time.sleep(0.05 if calls == 1 else 0)
+
+        self.arm.servo(slow)
+        self.arm.sleep(0.05)
+        with self.assertWarnsRegex(RuntimeWarning, "A call of the servo took [0-9]+ ms.*below 1 ms"):
+            self.arm.stop_servo()
+        losses = self.arm.losses
+        self.assertGreaterEqual(losses.slow_servo_calls, 1)
+        self.assertGreaterEqual(losses.longest_servo_call_s, 0.05)
+        self.assertEqual(losses.poses, 0)
+        with warnings.catch_warnings(action="error"):
+            self.arm.stop_servo()  # the same call is reported only once
+
+    def test_a_recording_holds_name_note_marks_and_the_shapes_that_were_placed(self):
+        make_active(self.arm)
+        with self.assertRaisesRegex(inkwell.Refused, "No recording is running"):
+            self.arm.mark("early")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "felt.csv")
+            with self.arm.record(file, "position_z_m", name="subject 7", note="left hand") as recording:
+                self.arm.sleep(0.05)
+                self.arm.mark("stimulus")
+                self.arm.place_shapes(inkwell.Sphere((0, 0, 0.05), 0.01))
+                self.arm.sleep(0.05)
+            self.assertEqual(recording.complete, recording.lost == 0)
+            text = file.read_text()
+        self.assertIn("# name = subject 7\n# note = left hand\n", text)
+        self.assertRegex(text, r"# mark [0-9]+ mark [-0-9]+T[0-9:]+\.[0-9]{6}Z = stimulus\n")
+        self.assertRegex(text, r"# mark [0-9]+ shape .* = Sphere: center \(0, 0, 0.05\) m, radius 0.01 m")
+
+    def test_a_test_pulse_is_recorded(self):
+        wait_until(self.arm, lambda pose: pose.state == inkwell.State.READY)
+        with self.assertRaisesRegex(inkwell.BadArgument, "either a voltage or a current"):
+            self.arm.send_test_pulse(1)
+        self.arm.select_signals("current_1_A", "duty_1")
+        self.arm.send_test_pulse(1, voltage_V=1.5)
+        self.arm.sleep(0.02)
+        samples = self.arm.read_scope(rows=400)
+        for _ in range(20):
+            if samples["duty_1"].max() > 0.03:
+                break
+            samples = self.arm.read_scope(rows=400)
+        self.assertGreater(samples["duty_1"].max(), 0.03)
 
     def test_an_exception_in_a_servo_stops_it_and_is_raised_once(self):
         def broken(pose):

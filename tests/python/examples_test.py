@@ -13,6 +13,7 @@ import tempfile
 import unittest
 from collections.abc import Callable, Iterator
 
+import inkwell
 import numpy as np
 
 from virtual_board import AXES, FREE_POINT_M, VirtualBoard, rests_at_x
@@ -154,6 +155,18 @@ class Examples(unittest.TestCase):
             counted = re.fullmatch(r"40000 samples, 0 lost: (\d+) mm of path, at most 0\.\d\d m/s\n", said)
             self.assertTrue(counted, said)
             self.assertAlmostEqual(float(counted[1]), 80, delta=15)
+
+    def test_the_hand_of_a_running_board_follows_a_path_with_its_own_damping(self):
+        with VirtualBoard(BUILD) as board, inkwell.open(board.address) as arm:
+            with self.assertRaisesRegex(inkwell.Refused, "connect the control socket"):
+                arm.virtual_hand.move(beside(0.0))
+            arm.virtual_hand.connect(board.control_address)
+            arm.virtual_hand.move(beside(0.0), 500, 12)
+            self.assertTrue(arm.virtual_hand.truth()["hand_holds"])
+            arm.sleep(0.5)
+            arm.virtual_hand.follow([(0.0, beside(0.0)), (0.3, beside(0.02))])
+            arm.sleep(0.6)
+            self.assertAlmostEqual(arm.pose.position_m[0], 0.02, delta=0.003)
 
     def test_missing_addresses_are_reported(self):
         for name in "two_arms.cpp", "two_arms.py":

@@ -96,8 +96,8 @@ class Records(unittest.TestCase):
     def setUpClass(cls):
         with inkwell.open("virtual") as arm:
             arm.set_force((0, 0, 0))
-            cls.records = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver, arm.state,
-                           arm.abilities, *arm.self_test()]
+            cls.records = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver, arm.losses,
+                           arm.state, arm.abilities, *arm.self_test()]
             cls.later = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver]
             cls.samples = arm.capture("supply_V", duration_s=0.01)
         with mock.patch.dict(os.environ, INKWELL_DEVICE="virtual"):

@@ -51,6 +51,7 @@ class VirtualBoard:
         ports = re.fullmatch(r"ready usbip=(\d+) control=(\d+)\n", ready)
         assert ports, f"the virtual board did not start: {ready!r}"
         self.address = f"usbip:127.0.0.1:{ports[1]}"
+        self.control_address = f"127.0.0.1:{ports[2]}"
         self._control = socket.create_connection(("127.0.0.1", int(ports[2])))
         self._replies = self._control.makefile()
         self.call("dock", docked=in_inkwell)

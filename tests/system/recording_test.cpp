@@ -34,7 +34,8 @@ TEST_CASE("a recording contains every control period and states its origin") {
   // All subcases use the same recording.
   static const TemporaryDirectory directory;
   static const auto file = directory.file("a.h5");
-  static const auto run = run_program("inkwell", {"--virtual", "record", file, "--seconds", "1.5", "--json"});
+  static const auto run =
+      run_program("inkwell", {"--virtual", "record", file, "--seconds", "1.5", "--name", "subject 7", "--json"});
   INFO("standard error: ", run.err);
   REQUIRE(run.exit_code == 0);
   const auto status = json::parse(run.out);
@@ -48,6 +49,9 @@ TEST_CASE("a recording contains every control period and states its origin") {
   CHECK(recording.lost() == 0);
   CHECK(recording.complete);
   CHECK(recording.information.simulation);
+  CHECK(recording.information.name == "subject 7");
+  CHECK(recording.information.library_sha256.size() == 64);
+  CHECK(recording.information.image_sha256.size() == 64);
   CHECK(recording.information.arm == "PHANTOM Omni");
   CHECK(recording.information.serial_number.size() == 24);
   CHECK(recording.information.parameters == protocol::default_parameters());
@@ -129,7 +133,9 @@ TEST_CASE("the whole signal path goes into a CSV without loss") {
   const auto recording = recording::read(file);
   CHECK(recording.size() == 10'000);
   CHECK(recording.lost() == 0);
-  CHECK(recording.information.signals == recording::signal_path());
+  auto expected = recording::signal_path();
+  expected.push_back(Signal::supply_V);
+  CHECK(recording.information.signals == expected);
 }
 
 TEST_CASE("every signal that can be recorded is listed, and no device is needed for it") {

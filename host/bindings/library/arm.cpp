@@ -10,6 +10,7 @@
 #include "host/client/device/board_store.hpp"
 #include "host/client/device/clear_fault.hpp"
 #include "host/client/device/fault_text.hpp"
+#include "host/client/device/hand_events.hpp"
 
 #include "host/bindings/library/errors.hpp"
 
@@ -47,12 +48,12 @@ Clock::duration duration_of(double timeout_s) {
 }  // namespace
 
 Arm::Arm(const std::string& address, double timeout_s)
-    : connection_(address, poses_, duration_of(timeout_s)),
+    : connection_(address, poses_, reports_, duration_of(timeout_s)),
       force_(connection_.device(), poses_),
-      scope_(connection_.device(), poses_),
+      scope_(connection_.device(), poses_, reports_),
       servo_(
           poses_, [this](const auto& force_N, std::uint32_t pose_sequence) { drive(force_N, pose_sequence); },
-          [this] { force_.let_go(); }) {
+          [this] { force_.let_go(); }, &reports_) {
   inherit_priority(claim_mutex_);
 }
 
@@ -216,6 +217,7 @@ void Arm::drive(const double (&force_N)[3], std::uint32_t pose_sequence) {
 void Arm::place_shapes(const device::Shapes& shapes) {
   claim();
   device().place_shapes(shapes);
+  if (scope_.is_recording()) scope_.note(device::events_of_shapes(shapes, periods_of(last().pose)));
 }
 
 void Arm::start_servo(Servo::Function function) {
@@ -228,9 +230,20 @@ void Arm::start_servo(Servo::Function function) {
 
 // ---- parameters --------------------------------------------------------------------------------------------
 
+template <class Change>
+void Arm::note_change(Change change) {
+  if (!scope_.is_recording()) {
+    change();
+    return;
+  }
+  const auto before = device().parameters();
+  const std::optional<std::int64_t> at_periods = change();
+  scope_.note(device::events_of_change(before, device().parameters(), at_periods));
+}
+
 void Arm::set_parameters(const std::vector<device::ParameterChange>& changes) {
   const std::lock_guard lock(parameters_mutex_);
-  device().set_parameters(changes);
+  note_change([&] { return device().set_parameters(changes).applied_at_periods; });
   const bool changes_arm =
       std::any_of(changes.begin(), changes.end(), [](const auto& change) { return info(change.first).belongs_to_arm; });
   if (changes_arm) connection_.set_geometry(device().parameters());
@@ -238,14 +251,45 @@ void Arm::set_parameters(const std::vector<device::ParameterChange>& changes) {
 
 void Arm::restore_parameters() {
   const std::lock_guard lock(parameters_mutex_);
-  device().restore_stored_parameters();
+  note_change([&] { return device().restore_stored_parameters().applied_at_periods; });
   connection_.set_geometry(device().parameters());
 }
 
 void Arm::factory_reset() {
   const std::lock_guard lock(parameters_mutex_);
-  device::factory_reset(device());
+  note_change([&]() -> std::optional<std::int64_t> {
+    device::factory_reset(device());
+    return std::nullopt;
+  });
   connection_.set_geometry(device().parameters());
+}
+
+// ---- recordings and losses ---------------------------------------------------------------------------------
+
+void Arm::describe_recordings(std::string name, std::string note) {
+  const std::lock_guard lock(texts_mutex_);
+  recording_name_ = std::move(name);
+  recording_note_ = std::move(note);
+}
+
+void Arm::start_recording(const std::string& path) {
+  recording::Origin origin{
+      .name = {}, .note = {}, .image = connection_.image(), .arm_description = connection_.arm_description()};
+  {
+    const std::lock_guard lock(texts_mutex_);
+    origin.name = recording_name_;
+    origin.note = recording_note_;
+  }
+  scope_.start_recording(path, endpoint().is_virtual, origin);
+}
+
+void Arm::send_test_pulse(protocol::Command command, const protocol::TestPulse& pulse) {
+  const auto now = pose();
+  refuse_in_fault(now);
+  if (now.state != INKWELL_READY)
+    throw NotNow("Test pulses need the state ready. Put the stylus into the inkwell once, and switch the force off.");
+  claim();
+  device().carry_out(command, pulse);
 }
 
 }  // namespace inkwell::library

@@ -20,6 +20,7 @@
 #include "host/bindings/library/connection.hpp"
 #include "host/bindings/library/force_output.hpp"
 #include "host/bindings/library/pose_feed.hpp"
+#include "host/bindings/library/pose_reports.hpp"
 #include "host/bindings/library/scope_stream.hpp"
 #include "host/bindings/library/servo.hpp"
 
@@ -91,8 +92,20 @@ class Arm {
   void set_parameters(const std::vector<device::ParameterChange>& changes);
   void restore_parameters();
   void factory_reset();
-  void start_recording(const std::string& path) { scope_.start_recording(path, endpoint().is_virtual); }
+  /// Texts of the next recordings.
+  void describe_recordings(std::string name, std::string note);
+  void start_recording(const std::string& path);
 
+  struct Losses {
+    std::uint64_t poses;  ///< sent by the board and not received
+    Servo::Losses servo;
+  };
+  Losses losses() const { return {reports_.lost(), servo_.losses()}; }
+  /// Sends one test pulse to a motor. Throws NotNow if the board is not ready.
+  void send_test_pulse(protocol::Command command, const protocol::TestPulse& pulse);
+
+  /// Connects to the control socket of a virtual board that another program has started.
+  void connect_control(const std::string& address) { connection_.connect_control(address); }
   /// Passes the control client of the arm's virtual board to `action`. Throws NotNow if this arm has not started a
   /// board.
   template <class Action>
@@ -116,15 +129,21 @@ class Arm {
       throw;
     }
   }
+  /// Changes parameters, and notes the changes in a running recording.
+  template <class Change>
+  void note_change(Change change);
   void drive(const double (&force_N)[3], std::uint32_t pose_sequence);
   void bid_farewell();
 
   PoseFeed poses_;
+  PoseReports reports_;
   Connection connection_;
   ForceOutput force_;
   ScopeStream scope_;
 
-  std::mutex claim_mutex_;       ///< serializes claims of the arm
+  std::mutex claim_mutex_;  ///< serializes claims of the arm
+  std::mutex texts_mutex_;  ///< guards the texts of recordings
+  std::string recording_name_, recording_note_;
   std::mutex parameters_mutex_;  ///< serializes transactions and the updates that follow them
 
   Servo servo_;  ///< last: its function uses all other members

@@ -33,7 +33,8 @@ class CannotReturn : public Error {
 
 }  // namespace
 
-Connection::Connection(const std::string& address, PoseFeed& poses, Clock::duration timeout) : poses_(poses) {
+Connection::Connection(const std::string& address, PoseFeed& poses, PoseReports& reports, Clock::duration timeout)
+    : poses_(poses), reports_(reports) {
   inherit_priority(geometry_mutex_);
   std::promise<void> opened;
   auto is_open = opened.get_future();
@@ -109,12 +110,14 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
 
 void Connection::read_poses(const OnPose& on_pose) {
   PoseReader reader;  // the board may have restarted
+  reports_.start_link();
   Clock::duration silence{};
   auto before = Clock::now();
   bool drove = false, has_lost_claim = false;
   while (!ends() && poses_.begin_turn()) {
     arm_.device->keep_alive();
-    const auto newest = reader.read_newest(*arm_.device, pose_timeout, geometry());
+    const auto newest = reader.read_newest(*arm_.device, pose_timeout, geometry(),
+                                           [this](const device::Pose& report) { reports_.take(report); });
     const auto now = Clock::now();
     silence = newest ? Clock::duration() : silence + std::min<Clock::duration>(now - before, longest_wait);
     before = now;
@@ -189,8 +192,19 @@ std::optional<device::Endpoint> Connection::find_again() const {
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
+void Connection::connect_control(const std::string& address) {
+  if (!arm_.endpoint.is_virtual) throw NotNow("This arm is not a simulation, so it has no simulated hand.");
+  device::ControlClient client(device::parse_socket(address));
+  client.status();  // throws if this is not a control socket
+  const std::lock_guard lock(control_mutex_);
+  arm_.control.emplace(std::move(client));
+}
+
 device::ControlClient& Connection::own_board() {
-  if (!arm_.control) throw NotNow("Only an arm that was opened as \"virtual\" has a simulated hand.");
+  if (!arm_.control)
+    throw NotNow(
+        "Only an arm that was opened as \"virtual\" has a simulated hand. For a running virtual board, connect the "
+        "control socket first.");
   poses_.require_link();
   return *arm_.control;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <mutex>
@@ -14,6 +15,7 @@
 
 #include "host/bindings/library/pose_feed.hpp"
 #include "host/bindings/library/pose_reader.hpp"
+#include "host/bindings/library/pose_reports.hpp"
 
 namespace inkwell::library {
 
@@ -21,11 +23,14 @@ class Connection {
  public:
   /// Returns once poses arrive. If the arm has started a virtual board, the constructor also waits for referenced
   /// encoders. Throws TimedOut after `timeout`, and Error.
-  Connection(const std::string& address, PoseFeed& poses, Clock::duration timeout);
+  Connection(const std::string& address, PoseFeed& poses, PoseReports& reports, Clock::duration timeout);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
+  /// Files of a board that this arm has started; empty for other boards.
+  const std::filesystem::path& image() const { return arm_.image; }
+  const std::filesystem::path& arm_description() const { return arm_.arm_description; }
   /// The reference stays valid after a lost link.
   device::Device& device() const { return *arm_.device; }
   const device::Endpoint& endpoint() const { return arm_.endpoint; }
@@ -39,6 +44,8 @@ class Connection {
 
   /// Sets the scheduling priority of the thread that reads poses, as in set_priority().
   void set_thread_priority(int priority) { set_priority(thread_, priority); }
+  /// Throws BadAddress, or Error if no board answers.
+  void connect_control(const std::string& address);
 
   control::Arm geometry() const;
   void set_geometry(const protocol::ParameterSet& parameters);
@@ -60,6 +67,7 @@ class Connection {
   device::ControlClient& own_board();
 
   PoseFeed& poses_;
+  PoseReports& reports_;
   device::OpenArm arm_;  ///< created and destroyed by the thread; constant between construction and destruction
   std::mutex control_mutex_;
   mutable std::mutex geometry_mutex_;

@@ -49,10 +49,13 @@ inkwell_pose PoseReader::read(const device::Pose& report, const control::Arm& ge
 }
 
 std::optional<ReadPose> PoseReader::read_newest(device::Device& device, std::chrono::milliseconds timeout,
-                                                const control::Arm& geometry) {
+                                                const control::Arm& geometry,
+                                                const std::function<void(const device::Pose&)>& on_report) {
   std::optional<ReadPose> newest;
-  while (const auto report = device.read_pose(newest ? std::chrono::milliseconds(0) : timeout))
+  while (const auto report = device.read_pose(newest ? std::chrono::milliseconds(0) : timeout)) {
+    if (on_report) on_report(*report);
     newest = ReadPose{read(*report, geometry), report->is_referenced != 0, motion_};
+  }
   return newest;
 }
 

@@ -27,8 +27,10 @@ class PoseReader {
   const Motion& motion() const { return motion_; }
   /// Returns the newest pose that the device has sent, and waits if no pose has arrived. Returns none on time-out.
   /// Older poses are skipped, because a servo would answer them too late.
+  /// `on_report` receives every pose of the device, also the skipped poses.
   std::optional<ReadPose> read_newest(device::Device& device, std::chrono::milliseconds timeout,
-                                      const control::Arm& geometry);
+                                      const control::Arm& geometry,
+                                      const std::function<void(const device::Pose&)>& on_report = {});
 
  private:
   kinematics::VelocityFit velocity_;

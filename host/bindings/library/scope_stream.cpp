@@ -17,11 +17,13 @@ using namespace std::chrono_literals;
 /// The buffer stores the samples of five seconds.
 constexpr std::size_t rows_maximum = std::size_t{5} * protocol::servo_rate_Hz;
 /// Longest delay of the thread's exit.
-constexpr auto read_timeout = 20ms;
+constexpr auto scope_read_timeout = 20ms;
 
 }  // namespace
 
-ScopeStream::ScopeStream(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
+ScopeStream::ScopeStream(device::Device& device, PoseFeed& poses, PoseReports& reports)
+    : device_(device), poses_(poses), reports_(reports) {
+  reports_.listen([this](const device::Pose& report) { take_report(report); });
   if (poses_.is_in_lock_step())
     poses_.add(*this);
   else
@@ -29,6 +31,7 @@ ScopeStream::ScopeStream(device::Device& device, PoseFeed& poses) : device_(devi
 }
 
 ScopeStream::~ScopeStream() {
+  reports_.listen({});
   {
     const std::lock_guard lock(mutex_);
     stops_ = true;
@@ -80,7 +83,7 @@ void ScopeStream::run() {
       selection = selection_;
     }
     try {
-      if (auto samples = device_.read_scope(read_timeout)) keep(std::move(*samples));
+      if (auto samples = device_.read_scope(scope_read_timeout)) keep(std::move(*samples));
     } catch (const Error& error) {
       end(selection, error.what());
     }
@@ -96,7 +99,18 @@ void ScopeStream::end(std::uint64_t selection, const std::string& cause) {
   samples_.clear();
   rows_kept_ = 0;
   ended_by_ = cause;
+  if (recorder_) {
+    recorder_->note(device::event_now(device::EventKind::connection, cause, std::nullopt));
+    recorder_->miss_end();
+    feed_.emplace(*recorder_);
+  }
   changed_.notify_all();
+}
+
+void ScopeStream::take_report(const device::Pose& report) {
+  const std::lock_guard lock(mutex_);
+  newest_period_ = report.time_periods;
+  if (feed_) feed_->take(report);
 }
 
 void ScopeStream::keep(device::ScopeSamples samples) {
@@ -156,7 +170,7 @@ std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::siz
   return taken;
 }
 
-void ScopeStream::start_recording(const std::string& path, bool is_simulation) {
+void ScopeStream::start_recording(const std::string& path, bool is_simulation, const recording::Origin& origin) {
   const std::lock_guard user(user_mutex_);
   std::vector<protocol::Signal> signals;
   {
@@ -167,9 +181,28 @@ void ScopeStream::start_recording(const std::string& path, bool is_simulation) {
   if (signals.empty()) throw NotNow("No signals are selected. Select the signals to record first.");
   if (recorder_) throw NotNow("A recording is already running. Stop it first.");
   auto recorder = std::make_unique<recording::Recorder>(
-      path, recording::describe(device_.information(), device_.parameters(), signals, "", is_simulation));
+      path, recording::describe(device_.information(), device_.parameters(), signals, "", is_simulation, origin));
   const std::lock_guard lock(mutex_);
   recorder_ = std::move(recorder);
+  feed_.emplace(*recorder_);
+}
+
+bool ScopeStream::is_recording() {
+  const std::lock_guard lock(mutex_);
+  return recorder_ != nullptr;
+}
+
+void ScopeStream::mark(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  if (!recorder_) throw NotNow("No recording is running, so nothing can be marked. Start a recording first.");
+  recorder_->note(device::event_now(device::EventKind::mark, text, newest_period_));
+}
+
+void ScopeStream::note(const std::vector<device::Event>& events) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& event : events)
+    if (recorder_)
+      recorder_->note({event.kind, event.text, event.clock_utc, event.at_periods.value_or(newest_period_)});
 }
 
 recording::RecorderStatus ScopeStream::stop_recording() {
@@ -178,6 +211,7 @@ recording::RecorderStatus ScopeStream::stop_recording() {
   std::unique_ptr<recording::Recorder> finished;
   {
     const std::lock_guard lock(mutex_);
+    feed_.reset();
     finished = std::move(recorder_);
   }
   auto status = finished->stop();

@@ -13,16 +13,18 @@
 #include <vector>
 
 #include "host/client/device/device.hpp"
+#include "host/client/recording/event_feed.hpp"
 #include "host/client/recording/recorder.hpp"
 
 #include "host/bindings/library/pose_feed.hpp"
+#include "host/bindings/library/pose_reports.hpp"
 
 namespace inkwell::library {
 
 /// In lock step, the pose thread reads the samples with each pose.
 class ScopeStream : private TurnPart {
  public:
-  ScopeStream(device::Device& device, PoseFeed& poses);
+  ScopeStream(device::Device& device, PoseFeed& poses, PoseReports& reports);
   ~ScopeStream();
 
   /// Throws NotNow during a recording.
@@ -32,15 +34,21 @@ class ScopeStream : private TurnPart {
   std::optional<device::ScopeSamples> read(double timeout_s, std::size_t capacity);
 
   /// Throws NotNow if no signals are selected or a recording is running.
-  void start_recording(const std::string& path, bool is_simulation);
+  void start_recording(const std::string& path, bool is_simulation, const recording::Origin& origin);
   /// Throws NotNow if no recording is running, and Error if the file could not be written.
   recording::RecorderStatus stop_recording();
+  bool is_recording();
+  /// Throws NotNow if no recording is running.
+  void mark(const std::string& text);
+  /// Notes events in the recording, if a recording is running.
+  void note(const std::vector<device::Event>& events);
 
  private:
   void after_pose() override;
   void lose_link(const std::string& cause) override;
   void run();
   void keep(device::ScopeSamples samples);
+  void take_report(const device::Pose& report);
   void end(std::uint64_t selection, const std::string& cause);
   /// `lock` must be locked and is unlocked during the wait.
   void wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s);
@@ -49,6 +57,7 @@ class ScopeStream : private TurnPart {
 
   device::Device& device_;
   PoseFeed& poses_;
+  PoseReports& reports_;
 
   std::mutex user_mutex_;  ///< serializes select, start and stop; locked before `mutex_`
 
@@ -60,6 +69,8 @@ class ScopeStream : private TurnPart {
   std::deque<device::ScopeSamples> samples_;       ///< unread samples
   std::atomic<std::size_t> rows_kept_ = 0;         ///< may be read without the mutex
   std::unique_ptr<recording::Recorder> recorder_;  ///< changing it also requires `user_mutex_`
+  std::optional<recording::EventFeed> feed_;       ///< with `recorder_`
+  std::int64_t newest_period_ = 0;                 ///< of the poses during a recording
   bool stops_ = false;
 
   std::thread thread_;

@@ -9,8 +9,8 @@
 
 namespace inkwell::library {
 
-Servo::Servo(const PoseFeed& poses, Output output, std::function<void()> let_go)
-    : poses_(poses), output_(std::move(output)), let_go_(std::move(let_go)) {
+Servo::Servo(const PoseFeed& poses, Output output, std::function<void()> let_go, const PoseReports* reports)
+    : poses_(poses), reports_(reports), output_(std::move(output)), let_go_(std::move(let_go)) {
   inherit_priority(mutex_);
   thread_ = std::thread([this] { run(); });
 }
@@ -60,6 +60,11 @@ void Servo::stop() {
   changed_.wait(lock, [&] { return !runs_ || started_ != meant; });
 }
 
+Servo::Losses Servo::losses() const {
+  const std::lock_guard lock(mutex_);
+  return losses_;
+}
+
 bool Servo::is_running() const {
   const std::lock_guard lock(mutex_);
   return runs_;
@@ -104,14 +109,26 @@ void Servo::run() {
 
 void Servo::call(const Function& function, std::uint64_t known_interruptions) {
   std::uint32_t seen = poses_.last().pose.sequence;
-  for (bool goes_on = true; goes_on;) {
+  const auto count_lost = [this] { return reports_ == nullptr ? 0 : reports_->lost(); };
+  std::uint64_t lost = count_lost();
+  for (bool goes_on = true, is_first = true; goes_on; is_first = false) {
     const auto pose = poses_.wait_uninterrupted(
         known_interruptions, [&](const auto& newest) { return is_to_end_ || newest.sequence != seen; });
     if (is_to_end_) return;
+    const std::uint64_t not_called = pose.sequence - seen - 1, now_lost = count_lost();
+    const std::uint64_t lost_since = now_lost - std::exchange(lost, now_lost);
     seen = pose.sequence;
     double force_N[3]{};
+    const auto begin = Clock::now();
     goes_on = function(pose, force_N);
     if (!origin_.is_here()) return;  // the function has forked, and this is the child
+    const double call_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    {
+      const std::lock_guard lock(mutex_);
+      if (!is_first && not_called > lost_since) losses_.poses_missed += not_called - lost_since;
+      losses_.slow_calls += call_s > 1.0 / protocol::pose_rate_Hz;
+      losses_.longest_call_s = std::max(losses_.longest_call_s, call_s);
+    }
     // A value that is not finite becomes 0, because the previous force would otherwise remain active.
     for (double& value : force_N)
       if (!std::isfinite(value)) value = 0.0;

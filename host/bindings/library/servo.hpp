@@ -12,6 +12,7 @@
 #include "host/client/process/fork.hpp"
 
 #include "host/bindings/library/pose_feed.hpp"
+#include "host/bindings/library/pose_reports.hpp"
 
 namespace inkwell::library {
 
@@ -24,7 +25,7 @@ class Servo {
   using Output = std::function<void(const double (&force_N)[3], std::uint32_t pose_sequence)>;
 
   /// `let_go` is called when a servo has stopped.
-  Servo(const PoseFeed& poses, Output output, std::function<void()> let_go);
+  Servo(const PoseFeed& poses, Output output, std::function<void()> let_go, const PoseReports* reports = nullptr);
   /// Waits until a running call returns.
   ~Servo();
 
@@ -40,6 +41,13 @@ class Servo {
   void throw_what_ended_it() const;
   /// Sets the scheduling priority of the servo's thread, as in set_priority().
   void set_thread_priority(int priority) { set_priority(thread_, priority); }
+  /// Losses of all servos of this object.
+  struct Losses {
+    std::uint64_t poses_missed = 0;  ///< arrived while the servo was still running
+    std::uint64_t slow_calls = 0;    ///< took longer than a bus frame
+    double longest_call_s = 0;
+  };
+  Losses losses() const;
   bool is_caller() const { return std::this_thread::get_id() == thread_.get_id(); }
 
  private:
@@ -47,6 +55,7 @@ class Servo {
   void call(const Function& function, std::uint64_t known_interruptions);
 
   const PoseFeed& poses_;
+  const PoseReports* const reports_;  ///< counts lost poses; may be null
   const Output output_;
   const std::function<void()> let_go_;
   mutable std::mutex mutex_;
@@ -55,6 +64,7 @@ class Servo {
   std::uint64_t known_interruptions_ = 0;  ///< count of interruptions when the servo was started
   std::exception_ptr ended_by_;
   bool runs_ = false, closes_ = false;
+  Losses losses_;
   std::uint64_t started_ = 0;  ///< number of servos started so far
   std::atomic<bool> is_to_end_ = false;
   const process::Origin origin_;

@@ -467,6 +467,50 @@ Answers read(const Arguments& arguments) {
   return {matrix, numbers, mxCreateDoubleScalar(static_cast<double>(lost))};
 }
 
+Answers record(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  const auto names = texts(argument(arguments, 2));
+  require(inkwell_select_signals(arm, pointers(names).data(), names.size()));
+  require(inkwell_describe_recordings(arm, text(argument(arguments, 3)).c_str(), text(argument(arguments, 4)).c_str()));
+  require(inkwell_start_recording(arm, text(argument(arguments, 1)).c_str()));
+  return {};
+}
+
+Answers stop_recording(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  std::uint64_t samples = 0, lost = 0;
+  int is_complete = 0;
+  require(inkwell_finish_recording(arm, &samples, &lost, &is_complete));
+  require(inkwell_select_signals(arm, nullptr, 0));
+  return {mxCreateDoubleScalar(static_cast<double>(samples)), mxCreateDoubleScalar(static_cast<double>(lost)),
+          mxCreateLogicalScalar(is_complete != 0)};
+}
+
+Answers mark(const Arguments& arguments) {
+  require(inkwell_mark(find(arguments)->second, text(argument(arguments, 1)).c_str()));
+  return {};
+}
+
+Answers losses(const Arguments& arguments) {
+  inkwell_losses losses;
+  require(inkwell_get_losses(find(arguments)->second, &losses));
+  const char* names[] = {"poses", "poses_missed_by_servo", "slow_servo_calls", "longest_servo_call_s"};
+  const double values[] = {static_cast<double>(losses.poses), static_cast<double>(losses.poses_missed_by_servo),
+                           static_cast<double>(losses.slow_servo_calls), losses.longest_servo_call_s};
+  mxArray* answer = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(answer, 0, names[i], mxCreateDoubleScalar(values[i]));
+  return {answer};
+}
+
+Answers test_pulse(const Arguments& arguments) {
+  const std::string unit = text(argument(arguments, 2));
+  if (unit != "V" && unit != "A") throw Wrong("The unit of the pulse is not known. Give 'V' or 'A'.");
+  require(inkwell_send_test_pulse(find(arguments)->second, static_cast<int>(number(argument(arguments, 1))),
+                                  unit == "V" ? INKWELL_PULSE_V : INKWELL_PULSE_A, number(argument(arguments, 3)),
+                                  number(argument(arguments, 4))));
+  return {};
+}
+
 Answers hand(const Arguments& arguments) {
   inkwell_arm* arm = find(arguments)->second;
   if (arguments.size() < 2) {
@@ -509,6 +553,11 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"signals", signals},
     {"read", read},
     {"hand", hand},
+    {"record", record},
+    {"stop_recording", stop_recording},
+    {"mark", mark},
+    {"losses", losses},
+    {"test_pulse", test_pulse},
     {"information", information},
 };
 

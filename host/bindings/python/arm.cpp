@@ -356,6 +356,33 @@ void Arm::release_virtual_hand() {
   call([&] { return inkwell_release_virtual_hand(arm); });
 }
 
+void Arm::connect_virtual_hand(const std::string& control) {
+  const Use arm(*this);
+  call([&] { return inkwell_connect_virtual_hand(arm, control.c_str()); });
+}
+
+void Arm::hold_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m, double damping_Ns_per_m) {
+  const Use arm(*this);
+  call([&] { return inkwell_hold_virtual_hand(arm, target_m.data(), stiffness_N_per_m, damping_Ns_per_m); });
+}
+
+void Arm::move_virtual_hand_along(const std::vector<std::pair<double, std::array<double, 3>>>& path) {
+  const Use arm(*this);
+  std::vector<inkwell_waypoint> points;
+  for (const auto& [after_s, target_m] : path) points.push_back({after_s, {target_m[0], target_m[1], target_m[2]}});
+  call([&] { return inkwell_move_virtual_hand_along(arm, points.data(), points.size()); });
+}
+
+std::string Arm::virtual_truth() {
+  const Use arm(*this);
+  std::size_t size = 0;
+  call([&] { return inkwell_read_virtual_truth(arm, nullptr, 0, &size); });
+  std::string json(size + 1024, '\0');  // the next text may be longer
+  call([&] { return inkwell_read_virtual_truth(arm, json.data(), json.size(), nullptr); });
+  json.resize(json.find('\0'));
+  return json;
+}
+
 void Arm::press_virtual_buttons(bool button_1, bool button_2) {
   const Use arm(*this);
   call([&] { return inkwell_press_virtual_buttons(arm, button_1, button_2); });

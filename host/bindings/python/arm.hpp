@@ -78,14 +78,24 @@ class Arm {
   void release_virtual_hand();
   void press_virtual_buttons(bool button_1, bool button_2);
 
+  void connect_virtual_hand(const std::string& control);
+  void hold_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
+  void move_virtual_hand_along(const std::vector<std::pair<double, std::array<double, 3>>>& path);
+  std::string virtual_truth();
+
   void select_signals(const std::vector<std::string>& names);
   /// Returns (values, periods, lost) with at most `rows` rows, and one column of values for each signal. Returns no
   /// rows after a time-out. With `fill`, the function returns exactly `rows` rows, and raises TimedOut if no row
   /// arrives within `timeout_s`.
   py::tuple read_scope(std::size_t rows, double timeout_s, bool fill);
   void start_recording(const std::string& path);
-  /// (samples, lost)
-  std::pair<std::uint64_t, std::uint64_t> stop_recording();
+  /// (samples, lost, complete)
+  std::tuple<std::uint64_t, std::uint64_t, bool> finish_recording();
+  void describe_recordings(const std::string& name, const std::string& note);
+  void mark(const std::string& text);
+  inkwell_losses losses();
+  /// The unit is "V" or "A".
+  void send_test_pulse(int motor, const std::string& unit, double amplitude, double duration_s);
 
  private:
   std::vector<inkwell_test_item> test_items(decltype(&inkwell_self_test) test);

@@ -384,6 +384,23 @@ void define_driver(py::module_& module) {
       });
 }
 
+void define_losses(py::module_& module) {
+  using Losses = inkwell_losses;
+  py::class_<Losses> losses_type(module, "Losses", "Losses since the arm was opened.");
+  make_value(losses_type, &Losses::poses, &Losses::poses_missed_by_servo, &Losses::slow_servo_calls,
+             &Losses::longest_servo_call_s);
+  losses_type.def_readonly("poses", &Losses::poses, "poses that the board has sent and the library has not received")
+      .def_readonly("poses_missed_by_servo", &Losses::poses_missed_by_servo,
+                    "poses that arrived while the servo was still being called")
+      .def_readonly("slow_servo_calls", &Losses::slow_servo_calls,
+                    "calls of the servo that took longer than 1 ms on the PC's clock")
+      .def_readonly("longest_servo_call_s", &Losses::longest_servo_call_s, "longest call of the servo, s")
+      .def("__repr__", [](const py::object& self) {
+        return describe_attributes(self,
+                                   {"poses", "poses_missed_by_servo", "slow_servo_calls", "longest_servo_call_s"});
+      });
+}
+
 void define_arm(py::module_& module) {
   py::class_<Arm>(module, "Arm")
       .def(py::init<const std::string&, std::optional<double>>(), py::arg("address"), py::arg("timeout_s") = py::none())
@@ -428,10 +445,18 @@ void define_arm(py::module_& module) {
       .def("move_virtual_hand", &Arm::move_virtual_hand)
       .def("release_virtual_hand", &Arm::release_virtual_hand)
       .def("press_virtual_buttons", &Arm::press_virtual_buttons)
+      .def("connect_virtual_hand", &Arm::connect_virtual_hand)
+      .def("hold_virtual_hand", &Arm::hold_virtual_hand)
+      .def("move_virtual_hand_along", &Arm::move_virtual_hand_along)
+      .def("virtual_truth", &Arm::virtual_truth)
       .def("select_signals", &Arm::select_signals)
       .def("read_scope", &Arm::read_scope)
       .def("start_recording", &Arm::start_recording)
-      .def("stop_recording", &Arm::stop_recording);
+      .def("finish_recording", &Arm::finish_recording)
+      .def("describe_recordings", &Arm::describe_recordings)
+      .def("mark", &Arm::mark)
+      .def("losses", &Arm::losses)
+      .def("send_test_pulse", &Arm::send_test_pulse);
 }
 
 }  // namespace
@@ -447,6 +472,7 @@ PYBIND11_MODULE(_native, module) {
   inkwell::python::define_store(module);
   inkwell::python::define_self_test(module);
   inkwell::python::define_driver(module);
+  inkwell::python::define_losses(module);
   inkwell::python::define_arm(module);
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,

@@ -1,4 +1,4 @@
-// Reads scope samples directly into numpy arrays.
+// Reads scope samples directly into numpy arrays, and controls recordings and test pulses.
 #include <algorithm>
 
 #include <pybind11/numpy.h>
@@ -71,11 +71,38 @@ void Arm::start_recording(const std::string& path) {
   call([&] { return inkwell_start_recording(arm, path.c_str()); });
 }
 
-std::pair<std::uint64_t, std::uint64_t> Arm::stop_recording() {
+std::tuple<std::uint64_t, std::uint64_t, bool> Arm::finish_recording() {
   const Use arm(*this);
   std::uint64_t samples = 0, lost = 0;
-  call([&] { return inkwell_stop_recording(arm, &samples, &lost); });
-  return {samples, lost};
+  int is_complete = 0;
+  call([&] { return inkwell_finish_recording(arm, &samples, &lost, &is_complete); });
+  return {samples, lost, is_complete != 0};
+}
+
+void Arm::describe_recordings(const std::string& name, const std::string& note) {
+  const Use arm(*this);
+  call([&] { return inkwell_describe_recordings(arm, name.c_str(), note.c_str()); });
+}
+
+void Arm::mark(const std::string& text) {
+  const Use arm(*this);
+  call([&] { return inkwell_mark(arm, text.c_str()); });
+}
+
+// ---- losses, test pulses -----------------------------------------------------------------------------------
+
+inkwell_losses Arm::losses() {
+  const Use arm(*this);
+  inkwell_losses losses{};
+  call([&] { return inkwell_get_losses(arm, &losses); });
+  return losses;
+}
+
+void Arm::send_test_pulse(int motor, const std::string& unit, double amplitude, double duration_s) {
+  const Use arm(*this);
+  call([&] {
+    return inkwell_send_test_pulse(arm, motor, unit == "V" ? INKWELL_PULSE_V : INKWELL_PULSE_A, amplitude, duration_s);
+  });
 }
 
 }  // namespace inkwell::python

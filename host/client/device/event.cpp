@@ -15,8 +15,8 @@
 namespace inkwell::device {
 namespace {
 
-constexpr std::array<std::string_view, event_kind_count> event_kind_names{"mark",  "connection", "force",
-                                                                          "fault", "parameter",  "loss"};
+constexpr std::array<std::string_view, event_kind_count> event_kind_names{
+    "mark", "connection", "force", "fault", "parameter", "loss", "button", "source", "shape"};
 
 }  // namespace
 
@@ -30,9 +30,9 @@ std::optional<EventKind> find_event_kind(std::string_view name) {
 
 std::string clock_utc_now() {
   using namespace std::chrono;
-  const auto now = time_point_cast<milliseconds>(system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(system_clock::to_time_t(now)),
-                     now.time_since_epoch().count() % 1000);
+  const auto now = time_point_cast<microseconds>(system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:06}Z", fmt::gmtime(system_clock::to_time_t(now)),
+                     now.time_since_epoch().count() % 1'000'000);
 }
 
 Event event_now(EventKind kind, std::string text, std::optional<std::int64_t> at_periods) {
@@ -40,7 +40,7 @@ Event event_now(EventKind kind, std::string text, std::optional<std::int64_t> at
 }
 
 std::string log_line(std::string_view clock_utc, std::optional<double> time_s, EventKind kind, std::string_view text) {
-  return fmt::format("{:<24}  {:>14}  {:<10}  {}\n", clock_utc.empty() ? "-" : clock_utc,
+  return fmt::format("{:<27}  {:>14}  {:<10}  {}\n", clock_utc.empty() ? "-" : clock_utc,
                      time_s ? fmt::format("{:.5f} s", *time_s) : "-", name_of(kind), text);
 }
 

@@ -20,8 +20,11 @@ enum class EventKind : std::uint8_t {
   fault,       ///< the device entered or left the fault state
   parameter,   ///< a parameter was changed, or a change was refused
   loss,        ///< samples or poses were lost
+  button,      ///< a button of the stylus was pressed or released
+  source,      ///< the force that the hand feels has other sources
+  shape,       ///< a program placed or removed shapes
 };
-inline constexpr std::size_t event_kind_count = static_cast<std::size_t>(EventKind::loss) + 1;  // the last entry
+inline constexpr std::size_t event_kind_count = static_cast<std::size_t>(EventKind::shape) + 1;  // the last entry
 
 /// Returns a name such as "parameter".
 std::string_view name_of(EventKind kind);
@@ -36,7 +39,7 @@ struct Event {
   std::optional<std::int64_t> at_periods;
 };
 
-/// Returns a text such as "2026-11-23T22:15:34.123Z".
+/// Returns a text such as "2026-11-23T22:15:34.123456Z".
 std::string clock_utc_now();
 Event event_now(EventKind kind, std::string text, std::optional<std::int64_t> at_periods);
 

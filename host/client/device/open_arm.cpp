@@ -54,6 +54,8 @@ OpenArm open_on_own_board(const VirtualBoardOptions& options, std::optional<std:
   }
   opened.board = std::make_unique<VirtualBoard>(options);
   opened.control.emplace(opened.board->control());
+  opened.image = opened.board->image();
+  opened.arm_description = options.arm;
   if (options.paused) opened.control->stand_by();
   opened.endpoint = wait_for_endpoint(*opened.board, *opened.control, options.paused);
   opened.endpoint.lock_step = lock_step;

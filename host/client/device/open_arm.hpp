@@ -19,6 +19,9 @@ struct OpenArm {
   Endpoint endpoint{};
   std::unique_ptr<Device> device;
   std::string arm_name;  ///< from the arm description, or empty
+  /// Files of a virtual board that was started for this arm, otherwise empty. Without an arm description,
+  /// `arm_description` is empty.
+  std::filesystem::path image, arm_description;
 };
 
 /// Opens the arm at the address and throws Error or NoDevice on failure. For an `own_board` address, starts a virtual

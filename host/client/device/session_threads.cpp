@@ -187,6 +187,8 @@ void Session::Implementation::take_pose(const Pose& pose, std::optional<std::int
 void Session::Implementation::note_events(const std::optional<Pose>& before, const Pose& pose) {
   const std::lock_guard lock(mutex);
   events.add(events_between(before, pose, state.fault ? std::optional(state.fault->at_periods) : std::nullopt));
+  if (!before) hand_events = {};
+  events.add(hand_events.take(pose));
 }
 
 void Session::Implementation::note_losses(std::int64_t at_periods) {

@@ -8,6 +8,7 @@
 
 #include "host/client/device/session.hpp"
 
+#include "host/client/device/hand_events.hpp"
 #include "host/client/device/parameter_requests.hpp"
 
 namespace inkwell::device {
@@ -114,6 +115,7 @@ struct Session::Implementation {
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;
   EventLog events;
+  HandEvents hand_events;
   std::uint64_t reported_poses_lost = 0, reported_samples_lost = 0;
   Requests requests;
   std::vector<protocol::Signal> signals;

@@ -76,6 +76,18 @@ local::Descriptor connect_to_port(const SocketAddress& server) {
 
 }  // namespace
 
+namespace {
+
+/// A board whose cable was unplugged closes the connection, too, and goes on.
+std::string connection_lost(const std::string& peer) {
+  return fmt::format(
+      "The program at {} closed the connection. If the board still runs, plug its cable in, open the arm again and "
+      "clear the fault. Otherwise start the board again.",
+      peer);
+}
+
+}  // namespace
+
 Socket::Socket(const SocketAddress& server)
     : descriptor_(server.is_unix() ? local::connect_to(server.path) : connect_to_port(server)), peer_(server.text()) {
   if (!descriptor_.is_open())
@@ -98,7 +110,7 @@ void Socket::send(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = local::repeat_interrupted(
         [&] { return ::send(descriptor_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL); });
-    if (sent <= 0) throw Disconnected(fmt::format("The connection to {} was lost. Start the board again.", peer_));
+    if (sent <= 0) throw Disconnected(connection_lost(peer_));
     bytes = bytes.subspan(static_cast<std::size_t>(sent));
   }
 }
@@ -110,7 +122,7 @@ std::size_t Socket::receive_some(std::span<std::byte> bytes) {
   const ssize_t received =
       local::repeat_interrupted([&] { return recv(descriptor_.number(), bytes.data(), bytes.size(), 0); });
   if (received > 0) return static_cast<std::size_t>(received);
-  throw Disconnected(fmt::format("The program at {} closed the connection. Start the board again.", peer_));
+  throw Disconnected(connection_lost(peer_));
 }
 
 void Socket::receive(std::span<std::byte> bytes) {

@@ -37,7 +37,7 @@ UsbipConnection::UsbipConnection(const SocketAddress& server, const std::string&
                                  std::chrono::milliseconds timeout)
     : timeout_(timeout),
       gone_(fmt::format("The arm at {} was disconnected: its board has exited or restarted, or its cable was "
-                        "unplugged. Start the board, or plug the cable in.",
+                        "unplugged. Start the board, or plug the cable in and clear the fault of the board.",
                         server.text())),
       socket_(server) {
   socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));

@@ -141,6 +141,7 @@ struct VirtualBoard::Implementation {
   Pipe output, log;
   pid_t process = -1;
   SocketAddress usbip, control;
+  std::filesystem::path image;
   std::thread drain;
   mutable std::mutex mutex;
   std::string newest_log;  ///< the last kilobytes of the log, for error messages
@@ -239,6 +240,7 @@ VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_
         "The firmware {} is missing. Build it with tools/build, install Inkwell again, or give a firmware with --elf.",
         elf.string()));
   auto& self = *implementation_;
+  self.image = elf;
   self.start(arguments_of(options, program, elf));
   const std::string line = self.read_ready_line();
   if (!read_addresses(line, self.usbip, self.control)) {
@@ -260,6 +262,8 @@ std::optional<Endpoint> VirtualBoard::find() const {
 }
 
 ControlClient VirtualBoard::control() const { return ControlClient(control_socket()); }
+
+const std::filesystem::path& VirtualBoard::image() const { return implementation_->image; }
 
 bool VirtualBoard::is_running() const { return !implementation_->reap_process(WNOHANG); }
 

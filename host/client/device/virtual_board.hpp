@@ -66,6 +66,8 @@ class VirtualBoard {
   /// A new connection to the control socket.
   ControlClient control() const;
   bool is_running() const;
+  /// The firmware image that the board runs.
+  const std::filesystem::path& image() const;
 
  private:
   struct Implementation;

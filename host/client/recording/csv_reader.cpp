@@ -1,8 +1,10 @@
 #include "host/client/recording/formats.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <istream>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -77,16 +79,10 @@ class CsvReader {
       is_recording_ = true;
       if (number(value).value_or(0) > format_version)
         recording_.remarks.push_back(fmt::format("{} was written by a newer version of this program.", name_));
-    } else if (key == "created_utc")
-      about.created_utc = value;
-    else if (key == "firmware_version")
-      about.firmware_version = value;
+    } else if (std::string* const known = text_of(key))
+      *known = value;
     else if (key == "protocol_version")
       about.protocol_version = whole_number<std::uint16_t>(value).value_or(0);
-    else if (key == "serial_number")
-      about.serial_number = value;
-    else if (key == "arm")
-      about.arm = value;
     else if (key == "simulation")
       about.simulation = value == "1";
     else if (key == "step_periods")
@@ -97,8 +93,30 @@ class CsvReader {
       recording_.complete = value == "1";
     else if (key.starts_with("mark "))
       mark(key.substr(5), value);
+    else if (key.starts_with("clock "))
+      clock(key.substr(6), value);
     else if (key.starts_with("parameter "))
       parameter(key.substr(10), value);
+  }
+  /// Returns the text with this name; null if there is none.
+  std::string* text_of(std::string_view key) {
+    auto& about = recording_.information;
+    const std::pair<std::string_view, std::string*> texts[] = {{"name", &about.name},
+                                                               {"note", &about.note},
+                                                               {"created_utc", &about.created_utc},
+                                                               {"library_version", &about.library_version},
+                                                               {"library_sha256", &about.library_sha256},
+                                                               {"image_sha256", &about.image_sha256},
+                                                               {"arm_sha256", &about.arm_sha256},
+                                                               {"firmware_version", &about.firmware_version},
+                                                               {"serial_number", &about.serial_number},
+                                                               {"arm", &about.arm}};
+    const auto found = std::ranges::find(texts, key, &std::pair<std::string_view, std::string*>::first);
+    return found == std::end(texts) ? nullptr : found->second;
+  }
+  void clock(std::string_view period_text, std::string_view time_text) {
+    const auto period = whole_number<std::int64_t>(period_text), time_us = whole_number<std::int64_t>(time_text);
+    if (period && time_us && can_be_period(*period)) recording_.clock.push_back({*period, *time_us});
   }
   /// `about`: "PERIOD" or "PERIOD KIND CLOCK".
   void mark(std::string_view about, std::string_view text) {

@@ -1,6 +1,7 @@
 // CSV recordings: lines "# key = value" about the recording, a line of column names, and a line for each sample. A line
 // "# simulated NAME = description" marks a column from a simulation. A line "# mark PERIOD KIND CLOCK = description"
-// comes between samples, close to the samples of its period.
+// comes between samples, close to the samples of its period. A line "# clock PERIOD = MICROSECONDS" states the time of
+// the computer, in microseconds since 1970, at which the sample of this period arrived.
 #include "host/client/recording/formats.hpp"
 
 #include <cerrno>
@@ -50,12 +51,15 @@ class CsvWriter final : public Writer {
     else
       fmt::format_to(out, "# mark {} {} {} = {}\n", mark.period, name_of(mark.kind), mark.clock_utc, one_line);
   }
+  void clock(const ClockReading& reading) override {
+    fmt::format_to(std::back_inserter(text_), "# clock {} = {}\n", reading.period, reading.utc_us);
+  }
   void flush() override {
     write_text();
     if (std::fflush(file_.get()) != 0) fail();
   }
-  void finish() override {
-    fmt::format_to(std::back_inserter(text_), "# complete = 1\n");
+  void end(bool is_complete) override {
+    fmt::format_to(std::back_inserter(text_), "# complete = {}\n", is_complete ? 1 : 0);
     flush();
     own_.forget();
     if (std::fclose(file_.release()) != 0) fail();
@@ -64,8 +68,12 @@ class CsvWriter final : public Writer {
  private:
   void write_head(const Information& about) {
     auto out = std::back_inserter(text_);
-    fmt::format_to(out, "# {} = {}\n# created_utc = {}\n# firmware_version = {}\n# protocol_version = {}\n",
-                   format_name, format_version, about.created_utc, about.firmware_version, about.protocol_version);
+    fmt::format_to(out, "# {} = {}\n# name = {}\n# note = {}\n# created_utc = {}\n", format_name, format_version,
+                   about.name, about.note, about.created_utc);
+    fmt::format_to(out, "# library_version = {}\n# library_sha256 = {}\n# image_sha256 = {}\n# arm_sha256 = {}\n",
+                   about.library_version, about.library_sha256, about.image_sha256, about.arm_sha256);
+    fmt::format_to(out, "# firmware_version = {}\n# protocol_version = {}\n", about.firmware_version,
+                   about.protocol_version);
     fmt::format_to(out, "# serial_number = {}\n# arm = {}\n# simulation = {}\n", about.serial_number, about.arm,
                    about.simulation ? 1 : 0);
     if (about.step_periods != 1) fmt::format_to(out, "# step_periods = {}\n", about.step_periods);

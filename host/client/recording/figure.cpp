@@ -148,7 +148,7 @@ std::vector<std::string> facts_of(const StoredRecording& recording) {
   parts.push_back("firmware " + about.firmware_version);
   parts.push_back(minute_of(about.created_utc));
   if (recording.lost() > 0) parts.push_back(fmt::format("{} samples lost", recording.lost()));
-  if (!recording.complete) parts.push_back("cut short");
+  if (!recording.complete) parts.push_back("not complete");
   return parts;
 }
 

@@ -17,7 +17,7 @@ std::recursive_mutex& hdf5_mutex() {
   return use_of_hdf5;
 }
 
-void write_attribute(hid_t object, const char* name, hid_t type, const void* value) {
+void write_attribute_value(hid_t object, const char* name, hid_t type, const void* value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(object, name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   if (!attribute || H5Awrite(attribute.id(), type, value) < 0)
@@ -66,11 +66,11 @@ QuietHdf5::QuietHdf5() : lock_(hdf5_mutex()) {
 QuietHdf5::~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
 void write_attribute(hid_t object, const char* name, const std::string& text) {
-  write_attribute(object, name, text_type(text.size()).id(), text.c_str());
+  write_attribute_value(object, name, text_type(text.size()).id(), text.c_str());
 }
 
 void write_attribute(hid_t object, const char* name, std::int64_t number) {
-  write_attribute(object, name, H5T_NATIVE_INT64, &number);
+  write_attribute_value(object, name, H5T_NATIVE_INT64, &number);
 }
 
 }  // namespace inkwell::recording

@@ -36,9 +36,11 @@ class Hdf5Reader final : public ColumnReader {
     const bool is_complete = input_->whole_number("/complete") == 1;
     try {
       read_marks();
+      read_clock();
     } catch (const device::Error&) {
       if (is_complete) throw;
       recording_.marks.clear();
+      recording_.clock.clear();
       recording_.remarks.push_back(fmt::format(
           "The marks of {} are ignored: the recording program stopped while it wrote a mark, or is writing a mark now.",
           input_->name()));
@@ -59,7 +61,13 @@ class Hdf5Reader final : public ColumnReader {
     auto& about = recording_.information;
     if (input_->number_attribute("format_version") > format_version)
       recording_.remarks.push_back(fmt::format("{} was written by a newer version of this program.", input_->name()));
+    about.name = text("name");
+    about.note = text("note");
     about.created_utc = text("created_utc");
+    about.library_version = text("library_version");
+    about.library_sha256 = text("library_sha256");
+    about.image_sha256 = text("image_sha256");
+    about.arm_sha256 = text("arm_sha256");
     about.firmware_version = text("firmware_version");
     about.protocol_version = static_cast<std::uint16_t>(input_->number_attribute("protocol_version"));
     about.serial_number = text("serial_number");
@@ -117,6 +125,13 @@ class Hdf5Reader final : public ColumnReader {
     for (std::size_t i = 0; i < count; ++i)
       recording_.marks.push_back(
           {mark_periods[i], texts[i], device::find_event_kind(kinds[i]).value_or(device::EventKind::mark), clocks[i]});
+  }
+  void read_clock() {
+    if (!input_->has("/clock")) return;
+    const std::uint64_t count = std::min(input_->length_of("/clock/period"), input_->length_of("/clock/utc_us"));
+    const auto clock_periods = periods("/clock/period", count);
+    const auto times_us = input_->whole_numbers("/clock/utc_us", count);
+    for (std::size_t i = 0; i < count; ++i) recording_.clock.push_back({clock_periods[i], times_us[i]});
   }
   /// Most recordings have no gap, so the first and the last period of a long range show that the range has none.
   void read_stretches(std::uint64_t whole) {

@@ -70,6 +70,12 @@ class Hdf5Writer final : public Writer {
     write_mark_text(mark_clock_, mark.clock_utc, mark_clock_bytes);
     ++mark_count_;
   }
+  void clock(const ClockReading& reading) override {
+    const QuietHdf5 quiet;
+    extend(clock_period_, clock_count_, 1, H5T_NATIVE_INT64, &reading.period);
+    extend(clock_utc_us_, clock_count_, 1, H5T_NATIVE_INT64, &reading.utc_us);
+    ++clock_count_;
+  }
   void flush() override {
     const QuietHdf5 quiet;
     find_room();
@@ -79,12 +85,12 @@ class Hdf5Writer final : public Writer {
     if (H5Dwrite(samples_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &size_) < 0) fail();
     if (H5Dflush(samples_.id()) < 0) fail();
   }
-  void finish() override {
+  void end(bool is_complete) override {
     const QuietHdf5 quiet;
     write_samples(periods_.size());
     flush();
-    const std::int32_t yes = 1;
-    if (H5Dwrite(complete_.id(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, &yes) < 0) fail();
+    const std::int32_t written = is_complete ? 1 : 0;
+    if (H5Dwrite(complete_.id(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, &written) < 0) fail();
     if (H5Dflush(complete_.id()) < 0) fail();
     close();
   }
@@ -130,7 +136,13 @@ class Hdf5Writer final : public Writer {
     if (!file) fail();
     write_attribute(file.id(), "format", std::string(format_name));
     write_attribute(file.id(), "format_version", std::int64_t{format_version});
+    write_attribute(file.id(), "name", about.name);
+    write_attribute(file.id(), "note", about.note);
     write_attribute(file.id(), "created_utc", about.created_utc);
+    write_attribute(file.id(), "library_version", about.library_version);
+    write_attribute(file.id(), "library_sha256", about.library_sha256);
+    write_attribute(file.id(), "image_sha256", about.image_sha256);
+    write_attribute(file.id(), "arm_sha256", about.arm_sha256);
     write_attribute(file.id(), "firmware_version", about.firmware_version);
     write_attribute(file.id(), "protocol_version", std::int64_t{about.protocol_version});
     write_attribute(file.id(), "serial_number", about.serial_number);
@@ -161,6 +173,9 @@ class Hdf5Writer final : public Writer {
     growing(marks.id(), "text", byte_text_type(mark_text_bytes).id(), chunk_marks, Packing::none);
     growing(marks.id(), "kind", byte_text_type(mark_kind_bytes).id(), chunk_marks, Packing::none);
     growing(marks.id(), "clock_utc", byte_text_type(mark_clock_bytes).id(), chunk_marks, Packing::none);
+    const Handle clock = group(file.id(), "clock");
+    growing(clock.id(), "period", H5T_STD_I64LE, chunk_marks, Packing::none);
+    growing(clock.id(), "utc_us", H5T_STD_I64LE, chunk_marks, Packing::none);
     const std::int32_t no = 0;
     scalar(file.id(), "complete", H5T_NATIVE_INT32, &no);
     const hsize_t none = 0;
@@ -193,6 +208,8 @@ class Hdf5Writer final : public Writer {
     mark_text_ = open("/marks/text");
     mark_kind_ = open("/marks/kind");
     mark_clock_ = open("/marks/clock_utc");
+    clock_period_ = open("/clock/period");
+    clock_utc_us_ = open("/clock/utc_us");
     complete_ = open("/complete");
     samples_ = open("/samples");
   }
@@ -242,8 +259,8 @@ class Hdf5Writer final : public Writer {
   void close() {
     own_.forget();
     columns_.clear();
-    for (Handle* handle :
-         {&period_, &time_, &mark_period_, &mark_text_, &mark_kind_, &mark_clock_, &complete_, &samples_, &file_})
+    for (Handle* handle : {&period_, &time_, &mark_period_, &mark_text_, &mark_kind_, &mark_clock_, &clock_period_,
+                           &clock_utc_us_, &complete_, &samples_, &file_})
       *handle = Handle();
   }
   [[noreturn]] void fail() const {
@@ -260,14 +277,15 @@ class Hdf5Writer final : public Writer {
   std::string name_, file_name_;
   std::size_t width_;  ///< number of signals
   hsize_t chunk_samples_;
-  Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
+  Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, clock_period_, clock_utc_us_,
+      complete_, samples_;
   process::OwnDescriptor own_;         ///< descriptor of the file
   std::vector<Handle> columns_;        ///< signals, then simulated quantities
   std::vector<std::int64_t> periods_;  ///< samples that are not in the file yet, with the columns below
   std::vector<double> times_s_;
   std::vector<std::vector<float>> values_;
   hsize_t size_ = 0;  ///< number of samples in the file
-  hsize_t mark_count_ = 0;
+  hsize_t mark_count_ = 0, clock_count_ = 0;
 };
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include "host/client/recording/information.hpp"
 
-#include <chrono>
-#include <ctime>
+#include <dlfcn.h>
 
-#include <fmt/chrono.h>
-
+#include "host/client/device/event.hpp"
+#include "host/client/recording/sha256.hpp"
 #include "protocol/plain_text.hpp"
 
 namespace inkwell::recording {
@@ -20,12 +19,28 @@ bool is_default_arm(const protocol::ParameterSet& parameters) {
   return true;
 }
 
+/// Returns the library or program that contains this function.
+std::filesystem::path file_of_this_code() {
+  Dl_info about{};
+  const bool is_known = ::dladdr(reinterpret_cast<const void*>(&is_default_arm), &about) != 0;
+  // The dynamic linker knows the main program only by the name in its arguments.
+  const std::filesystem::path file = is_known ? about.dli_fname : "";
+  return file.is_absolute() && std::filesystem::exists(file) ? file : "/proc/self/exe";
+}
+
 }  // namespace
 
 Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
-                     std::vector<protocol::Signal> signals, const std::string& arm, bool simulation) {
-  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return {.created_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
+                     std::vector<protocol::Signal> signals, const std::string& arm, bool simulation,
+                     const Origin& origin) {
+  static const std::string library_sha256 = sha256_of_file(file_of_this_code());
+  return {.name = protocol::plain_text(origin.name),
+          .note = protocol::plain_text(origin.note),
+          .created_utc = device::clock_utc_now(),
+          .library_version = INKWELL_VERSION,
+          .library_sha256 = library_sha256,
+          .image_sha256 = sha256_of_file(origin.image),
+          .arm_sha256 = sha256_of_file(origin.arm_description),
           .firmware_version = device.firmware_version,
           .protocol_version = device.protocol_version,
           .serial_number = device.serial_number,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +20,13 @@ inline constexpr int format_version = 1;
 inline constexpr char format_name[] = "inkwell recording";
 
 struct Information {
-  std::string created_utc;  ///< ISO 8601
+  std::string name;         ///< chosen by the user; empty: none
+  std::string note;         ///< text of the user in one line; empty: none
+  std::string created_utc;  ///< ISO 8601 with microseconds
+  /// Version of the library or program that recorded, and SHA-256 of its file in hexadecimal digits.
+  std::string library_version, library_sha256;
+  /// SHA-256 of the firmware image and of the arm description; empty if the files are unknown, as for a board on USB.
+  std::string image_sha256, arm_sha256;
   std::string firmware_version;
   std::uint16_t protocol_version = protocol::protocol_version;
   std::string serial_number;
@@ -37,9 +44,16 @@ struct Information {
   std::vector<protocol::SimulatedQuantity> simulated;
 };
 
+/// Texts of the user, and files that determine the content of a recording.
+struct Origin {
+  std::string name, note;
+  std::filesystem::path image, arm_description;  ///< empty: unknown
+};
+
 /// Returns the metadata for a recording that starts now. If `arm` is empty and the parameters match the default arm,
 /// its name is used.
 Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
-                     std::vector<protocol::Signal> signals, const std::string& arm, bool simulation);
+                     std::vector<protocol::Signal> signals, const std::string& arm, bool simulation,
+                     const Origin& origin = {});
 
 }  // namespace inkwell::recording

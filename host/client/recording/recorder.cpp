@@ -35,7 +35,7 @@ Information only_signals(Information information) {
 }  // namespace
 
 struct Recorder::Implementation {
-  using Item = std::variant<device::ScopeSamples, Mark>;
+  using Item = std::variant<device::ScopeSamples, Mark, ClockReading>;
 
   Implementation(const std::filesystem::path& path, const Information& about)
       : file(path), information(about), writer(create(path, about)), thread([this] { write_all(); }) {}
@@ -49,6 +49,7 @@ struct Recorder::Implementation {
       items.swap(queue);
       queued_bytes = 0;
       const bool last = stopping;
+      const bool is_complete = status.lost == 0 && status.error.empty() && !misses_end;
       const bool flush_now = std::chrono::steady_clock::now() >= next_flush;
       lock.unlock();
       try {
@@ -57,7 +58,7 @@ struct Recorder::Implementation {
           writer->flush();
           next_flush = std::chrono::steady_clock::now() + flush_interval;
         }
-        if (last) writer->finish();
+        if (last) writer->end(is_complete);
       } catch (const device::Error& problem) {
         lock.lock();
         status.error = fmt::format("{} At most the last half second before this error is missing from the recording.",
@@ -68,6 +69,7 @@ struct Recorder::Implementation {
       lock.lock();
       update_sizes();
       if (last) {
+        status.is_complete = is_complete;
         status.running = false;
         return;
       }
@@ -75,6 +77,7 @@ struct Recorder::Implementation {
   }
   void write(const Item& item) {
     if (const auto* mark = std::get_if<Mark>(&item)) return writer->mark(*mark);
+    if (const auto* reading = std::get_if<ClockReading>(&item)) return writer->clock(*reading);
     writer->append(std::get<device::ScopeSamples>(item), {});
   }
   void update_sizes() {
@@ -92,10 +95,11 @@ struct Recorder::Implementation {
   std::condition_variable wake;
   std::deque<Item> queue;
   std::size_t queued_bytes = 0;
-  bool stopping = false;
+  bool stopping = false, misses_end = false;
   RecorderStatus status{.running = true};
   std::optional<std::int64_t> first_period;
   std::int64_t newest_period = 0;
+  std::int64_t next_clock_period = 0;
   std::vector<Mark> early_marks;  ///< marks before the first sample, assigned to the first sample
 
   std::thread thread;  // last member, so that the thread starts after all others exist
@@ -129,6 +133,12 @@ void Recorder::push(const device::ScopeSamples& samples) {
   self.status.duration_s = device::board_time_s(self.newest_period - *self.first_period);
   self.queued_bytes += size_of(samples);
   self.queue.emplace_back(samples);
+  if (is_first || self.newest_period >= self.next_clock_period) {
+    using namespace std::chrono;
+    const auto now = time_point_cast<microseconds>(system_clock::now());
+    self.queue.emplace_back(ClockReading{self.newest_period, now.time_since_epoch().count()});
+    self.next_clock_period = self.newest_period + protocol::servo_rate_Hz;
+  }
   if (is_first)
     for (Mark& mark : self.early_marks) {
       mark.period = samples.first_period;
@@ -149,6 +159,11 @@ void Recorder::note(const device::Event& event) {
   mark.period = std::max(mark.period, *self.first_period);
   self.queue.emplace_back(std::move(mark));
   self.wake.notify_one();
+}
+
+void Recorder::miss_end() {
+  const std::lock_guard lock(implementation_->mutex);
+  implementation_->misses_end = true;
 }
 
 RecorderStatus Recorder::status() const {

@@ -18,7 +18,8 @@ struct RecorderStatus {
   std::uint64_t bytes = 0;
   std::uint64_t free_bytes = 0;  ///< free space on its disk
   std::size_t marks = 0;
-  std::string error;  ///< a sentence; empty without an error
+  bool is_complete = false;  ///< true once the recording has stopped and nothing is missing
+  std::string error;         ///< a sentence; empty without an error
 };
 
 class Recorder {
@@ -35,6 +36,9 @@ class Recorder {
   void mark(const std::string& text);
   /// Records an event of the device at its control period. Without a period, the event is recorded like a user's mark.
   void note(const device::Event& event);
+  /// Reports that samples are missing at the end, for example because the link was lost. The recording is then not
+  /// complete.
+  void miss_end();
   RecorderStatus status() const;
   /// Writes the remaining samples, closes the file and returns the final status.
   RecorderStatus stop();

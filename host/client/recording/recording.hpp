@@ -23,14 +23,22 @@ struct Mark {
   std::string clock_utc = {};  ///< in the format of device::clock_utc_now(); empty if unknown
 };
 
+/// Time of the computer when the sample of a control period arrived.
+struct ClockReading {
+  std::int64_t period;
+  std::int64_t utc_us;  ///< microseconds since 1970-01-01
+};
+
 struct Recording {
   std::string name;  ///< file name without folder and extension
   Information information;
-  bool complete = true;  ///< false: the writer stopped before the end of the recording
+  /// False: samples were lost, the link was lost, or the writer stopped before the end of the recording.
+  bool complete = true;
   std::vector<std::int64_t> periods;
   std::vector<std::vector<float>> columns;  ///< one for each entry of information.signals, with the length of `periods`
   std::vector<std::vector<float>> simulated_columns;  ///< one for each entry of information.simulated
   std::vector<Mark> marks;                            ///< sorted by period after reading
+  std::vector<ClockReading> clock;                    ///< about one for each second
   std::vector<std::string> remarks;                   ///< sentences about contents that this version cannot interpret
 
   static Recording without_samples(Information information);

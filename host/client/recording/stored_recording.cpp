@@ -36,6 +36,7 @@ StoredRecording::StoredRecording(Recording recording)
   information = std::move(recording.information);
   complete = recording.complete;
   marks = std::move(recording.marks);
+  clock = std::move(recording.clock);
   remarks = std::move(recording.remarks);
 }
 
@@ -44,6 +45,7 @@ StoredRecording::StoredRecording(Recording head, Stretches stretches, std::share
       information(std::move(head.information)),
       complete(head.complete),
       marks(std::move(head.marks)),
+      clock(std::move(head.clock)),
       remarks(std::move(head.remarks)),
       stretches_(std::move(stretches)),
       reader_(std::move(reader)) {}
@@ -123,6 +125,7 @@ Recording StoredRecording::load(const std::vector<Quantity>& quantities) const {
   loaded.information.simulated.clear();
   loaded.complete = complete;
   loaded.marks = marks;
+  loaded.clock = clock;
   loaded.remarks = remarks;
   loaded.periods.reserve(size());
   for (std::size_t begin = 0; begin < size();) {

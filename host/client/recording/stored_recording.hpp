@@ -36,6 +36,7 @@ class StoredRecording {
   Information information;
   bool complete = true;
   std::vector<Mark> marks;
+  std::vector<ClockReading> clock;
   std::vector<std::string> remarks;
 
   std::size_t size() const { return stretches_.size(); }

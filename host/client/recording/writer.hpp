@@ -20,10 +20,12 @@ class Writer {
   /// simulated quantity j of sample i; `simulated` may be empty.
   virtual void append(const device::ScopeSamples& samples, std::span<const float> simulated) = 0;
   virtual void mark(const Mark& mark) = 0;
+  virtual void clock(const ClockReading& reading) = 0;
   /// After this call, all appended data survives the end of the process.
   virtual void flush() = 0;
-  /// Flushes, marks the recording as complete, and closes the file.
-  virtual void finish() = 0;
+  /// Flushes, states whether the recording is complete, and closes the file.
+  virtual void end(bool is_complete) = 0;
+  void finish() { end(true); }
 };
 
 /// Treatment of an existing file with the same name.

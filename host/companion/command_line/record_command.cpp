@@ -15,6 +15,7 @@
 
 #include "host/client/command_line/help.hpp"
 #include "host/client/command_line/interrupt.hpp"
+#include "host/client/recording/event_feed.hpp"
 #include "host/client/recording/recorder.hpp"
 #include "host/client/recording/signals.hpp"
 
@@ -42,6 +43,7 @@ struct RecordOptions {
   double seconds = 0;  ///< 0: until interrupted
   bool mark_key = false;
   bool force = false;
+  std::string name, note;
 };
 
 /// Reads the scope in a separate thread, so that a slow terminal does not cause lost samples. Stops after a given
@@ -97,7 +99,11 @@ class RecordingThread {
 };
 
 std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
-  if (options.all) return recording::signal_path();
+  if (options.all) {
+    auto signals = recording::signal_path();
+    signals.push_back(protocol::Signal::supply_V);  // the scope transmits no more signals
+    return signals;
+  }
   if (options.signals.empty()) return recording::standard_signals();
   return recording::parse_signals(options.signals);
 }
@@ -114,6 +120,37 @@ std::string progress_text(const RecorderStatus& status) {
   if (status.marks > 0) text += fmt::format(", {} mark{}", status.marks, status.marks == 1 ? "" : "s");
   return text;
 }
+
+/// Notes parameter changes of other programs.
+class ParameterWatch {
+ public:
+  ParameterWatch(device::Device& device, recording::Recorder& recorder)
+      : device_(device), recorder_(recorder), known_(device.parameters()) {}
+
+  /// Call this function for each pose. It reads the parameters twice per second.
+  void check(const device::Pose& pose) {
+    constexpr std::int64_t interval_periods = protocol::servo_rate_Hz / 2;
+    if (pose.time_periods < next_periods_) return;
+    next_periods_ = pose.time_periods + interval_periods;
+    protocol::ParameterSet now;
+    try {
+      now = device_.parameters();
+    } catch (const device::Disconnected&) {
+      throw;
+    } catch (const device::Error&) {  // the board is busy; the next check reads the parameters again
+      return;
+    }
+    for (const auto& event : device::events_of_change(known_, now, pose.time_periods, ", by another program"))
+      recorder_.note(event);
+    known_ = now;
+  }
+
+ private:
+  device::Device& device_;
+  recording::Recorder& recorder_;
+  protocol::ParameterSet known_;
+  std::int64_t next_periods_ = 0;
+};
 
 /// Returns the reason if the force was switched off during the recording.
 std::optional<std::string> run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options,
@@ -132,15 +169,17 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
   };
   auto next_shown = std::chrono::steady_clock::now();
   int silent_reads = 0;
-  std::optional<device::Pose> before;
+  recording::EventFeed events(recorder);
+  ParameterWatch parameters(device, recorder);
   while (!scope.is_done() && !interrupt.is_interrupted() && recorder.status().running) {
     const auto now = std::chrono::steady_clock::now();
     device.keep_alive();
     const auto pose = device.read_pose(read_timeout);
     silent_reads = pose ? 0 : silent_reads + 1;
-    if (pose)
-      for (const auto& event : device::events_between(std::exchange(before, pose), *pose, std::nullopt))
-        recorder.note(event);
+    if (pose) {
+      events.take(*pose);
+      parameters.check(*pose);
+    }
     if (force && pose && !force_went_off) force_went_off = force->loss(*pose);
     if (silent_reads * read_timeout > silence_limit) throw device::Error(device_is_silent);
     while (keys) {
@@ -162,7 +201,7 @@ ordered_json to_json(const RecordOptions& options, const RecorderStatus& status,
                      const std::optional<std::string>& force_went_off) {
   ordered_json json{{"file", options.file},  {"duration_s", status.duration_s}, {"samples", status.samples},
                     {"lost", status.lost},   {"bytes", status.bytes},           {"free_bytes", status.free_bytes},
-                    {"marks", status.marks}, {"complete", status.error.empty()}};
+                    {"marks", status.marks}, {"complete", status.is_complete}};
   if (force_went_off) json["force_went_off"] = *force_went_off;
   if (!status.error.empty()) json["error"] = status.error;
   return json;
@@ -178,8 +217,9 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
       BoardPace::real_time);
   const auto connection = early ? std::move(*early) : connect(device_options, BoardPace::real_time);
   auto& device = *connection.device;
-  const auto information = recording::describe(device.information(), device.parameters(), signals, connection.arm_name,
-                                               connection.endpoint.is_virtual);
+  const auto information = recording::describe(
+      device.information(), device.parameters(), signals, connection.arm_name, connection.endpoint.is_virtual,
+      {options.name, options.note, connection.image, connection.arm_description});
   std::optional<ForceSwitch> force;
   if (options.force) force.emplace(device);
   device.select_signals(signals);  // first, so that a busy scope does not leave an empty file
@@ -193,6 +233,8 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   } catch (const device::Error& error) {
     failure = error.what();
   }
+  if (const auto status = recorder.status(); !failure.empty() || span.missing_at_end(status.samples, status.lost) > 0)
+    recorder.miss_end();
   auto status = recorder.stop();
   if (status.error.empty() && !failure.empty())
     status.error = failure + " The recording contains all samples up to that time.";
@@ -228,13 +270,17 @@ void add_record_command(const CommandContext& context) {
               "Comma-separated names from `inkwell signals`. The default has the\nsignals that replay and plots need")
           ->type_name("NAMES");
   command
-      ->add_flag("--all", record_options->all, "All signals from the encoders to the duty cycles; not with --signals")
+      ->add_flag("--all", record_options->all,
+                 "All signals from the encoders to the duty cycles, and supply_V; not with --signals")
       ->excludes(signals);
   command->add_option("--seconds", record_options->seconds, "Stop after this board time")
       ->type_name("SECONDS")
       ->check(more_than_zero());
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line sets a mark with its text");
+  command->add_option("--name", record_options->name, "Name of the recording, such as a subject and a trial")
+      ->type_name("TEXT");
+  command->add_option("--note", record_options->note, "Note that is stored in the recording")->type_name("TEXT");
   command->add_flag("--force", record_options->force,
                     "Switch the force on before the recording, and off after the recording");
   add_examples(*command,

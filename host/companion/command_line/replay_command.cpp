@@ -28,9 +28,18 @@ ordered_json to_json(const StoredRecording& recording) {
                      {"text", mark.text},
                      {"kind", name_of(mark.kind)},
                      {"clock_utc", mark.clock_utc}});
+  ordered_json clock = ordered_json::array();
+  for (const auto& reading : recording.clock)
+    clock.push_back({{"time_s", recording.elapsed_s_at(reading.period)}, {"utc_us", reading.utc_us}});
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
     parameters[std::string(protocol::known_parameters()[i].name)] = about.parameters.values[i];
-  return {{"created_utc", about.created_utc},
+  return {{"name", about.name},
+          {"note", about.note},
+          {"created_utc", about.created_utc},
+          {"library_version", about.library_version},
+          {"library_sha256", about.library_sha256},
+          {"image_sha256", about.image_sha256},
+          {"arm_sha256", about.arm_sha256},
           {"firmware_version", about.firmware_version},
           {"protocol_version", about.protocol_version},
           {"serial_number", about.serial_number},
@@ -43,6 +52,7 @@ ordered_json to_json(const StoredRecording& recording) {
           {"signals", signals},
           {"simulated", simulated},
           {"marks", marks},
+          {"clock", clock},
           {"parameters", parameters},
           {"remarks", recording.remarks}};
 }
@@ -56,12 +66,14 @@ void print_names(const char* what, const std::vector<Value>& values) {
 
 void print(const StoredRecording& recording) {
   const auto& about = recording.information;
+  if (!about.name.empty()) fmt::print("name                {}\n", about.name);
+  if (!about.note.empty()) fmt::print("note                {}\n", about.note);
   fmt::print("recorded            {}{}\n", about.created_utc, about.simulation ? ", from a simulation" : "");
   fmt::print("device              {}, firmware {}, protocol {}\n", about.serial_number, about.firmware_version,
              about.protocol_version);
   if (!about.arm.empty()) fmt::print("arm                 {}\n", about.arm);
   fmt::print("duration            {:.3f} s, {} samples, {} lost{}\n", recording.duration_s(), recording.size(),
-             recording.lost(), recording.complete ? "" : "; its end is missing");
+             recording.lost(), recording.complete ? "" : "; not complete");
   print_names("signals", about.signals);
   if (!about.simulated.empty()) print_names("simulated", about.simulated);
   for (const auto& mark : recording.marks)

@@ -18,7 +18,7 @@ from . import _requirements
 
 _requirements.check()
 
-from ._native import (Abilities, ArmState, Device, Driver, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem,
+from ._native import (Abilities, ArmState, Device, Driver, ForceMode, Information, Losses, Pose, State, Store, Stored, Test, TestItem,
                       devices)
 from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open
@@ -35,7 +35,7 @@ from .shapes import Plane, Sphere, Surface
 __version__ = _version()
 __all__ = [
     "Abilities", "Arm", "ArmState", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceLost", "ForceMode", "InUse",
-    "Incompatible", "Information", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
+    "Incompatible", "Information", "Losses", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
     "Refused", "Samples", "Signal", "Sphere", "State", "Store", "Stored", "Surface", "Test", "TestItem", "TimedOut",
     "VirtualHand", "devices", "open", "parameters_table", "signals", "wait_for_devices",
 ]

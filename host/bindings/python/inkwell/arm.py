@@ -3,10 +3,12 @@
 import atexit
 import contextlib
 import dataclasses
+import json
 import math
 import os
 import time
 import types
+import warnings
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
@@ -15,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native, errors
-from ._native import Abilities, ArmState, Driver, ForceMode, Information, Pose, TestItem
+from ._native import Abilities, ArmState, Driver, ForceMode, Information, Losses, Pose, TestItem
 from .parameters import Parameters
 from .scope import Samples
 from .shapes import Plane, Sphere
@@ -34,6 +36,8 @@ def _call(function: Callable[..., Any], *arguments: object, wants: str) -> Any:
         raise TypeError(f"The argument is {given}. Give {wants}.") from None
 
 
+# A servo call of this duration is reported.
+_SLOW_CALL_S = 0.02
 _SECONDS = "seconds, a number"
 _FORCE = "three numbers, the force in N along x, y and z"
 
@@ -51,16 +55,33 @@ def _close_all() -> None:
 
 
 class VirtualHand:
-    """The simulated hand of an arm that was opened as "virtual"."""
+    """The simulated hand of an arm that was opened as "virtual", or of any virtual board after connect()."""
 
     def __init__(self, arm: _native.Arm) -> None:
         self._arm = arm
 
-    def move(self, target_m: Vector, stiffness_N_per_m: float = 300.0) -> None:
-        """Lifts the stylus out of the inkwell and pulls the probe to `target_m` (m) with a spring. The damping in Ns/m is a
-        hundredth of the stiffness."""
-        _call(self._arm.move_virtual_hand, target_m, stiffness_N_per_m,
-              wants="three numbers, the position in m along x, y and z, and the stiffness in N/m")
+    def connect(self, control: str) -> None:
+        """Connects the hand of a virtual board that was opened as "usbip:...". `control` is the address of the board's
+        control socket, "HOST:PORT" or "unix:PATH"."""
+        _call(self._arm.connect_virtual_hand, control, wants="the address of the control socket as text")
+
+    def move(self, target_m: Vector, stiffness_N_per_m: float = 300.0, damping_Ns_per_m: float | None = None) -> None:
+        """Lifts the stylus out of the inkwell and pulls the probe to `target_m` (m) with a spring. By default, the damping
+        in Ns/m is a hundredth of the stiffness."""
+        wants = "three numbers, the position in m along x, y and z, the stiffness in N/m, and the damping in Ns/m"
+        if damping_Ns_per_m is None:
+            _call(self._arm.move_virtual_hand, target_m, stiffness_N_per_m, wants=wants)
+        else:
+            _call(self._arm.hold_virtual_hand, target_m, stiffness_N_per_m, damping_Ns_per_m, wants=wants)
+
+    def follow(self, path: Sequence[tuple[float, Vector]]) -> None:
+        """Moves the target of a hand that holds the stylus smoothly through these points. Each point is the board time from
+        now on (s) and the target (m)."""
+        _call(self._arm.move_virtual_hand_along, path, wants="points: a time in s and three numbers in m each")
+
+    def truth(self) -> dict[str, Any]:
+        """The true values of the simulation, such as the force on the hand."""
+        return json.loads(self._arm.virtual_truth())
 
     def release(self) -> None:
         """Releases the stylus, and the arm falls like a real arm."""
@@ -80,6 +101,8 @@ class Recording:
     """Control periods in the file."""
     lost: int = 0
     """Control periods that were lost."""
+    complete: bool = False
+    """True if nothing is missing: no sample was lost, and the link was not lost."""
 
 
 class Arm:
@@ -99,6 +122,8 @@ class Arm:
                                  wants="the address as text or None, and the time-out in seconds")
         self._signals: tuple[str, ...] = ()
         self._servo_rate_Hz = self._native.information().servo_rate_Hz
+        self._reported_call_s = _SLOW_CALL_S
+        self._process_id = os.getpid()
         self.parameters = Parameters(self._native)
         self.virtual_hand = VirtualHand(self._native)
         _open.add(self)
@@ -106,6 +131,7 @@ class Arm:
     def close(self) -> None:
         """Stops the servo, fades this program's force and closes the arm. Raises the exception of the servo, or any other
         cause that has stopped it."""
+        self._report_slow_servo()
         try:
             self._native.close()
         finally:
@@ -287,8 +313,39 @@ class Arm:
         try:
             self._native.stop_servo()
         finally:
+            self._report_slow_servo()
             if not self._native.is_closed() and not self._native.servo_is_running():
                 _driving.discard(self)
+
+    def _report_slow_servo(self) -> None:
+        if self._native.is_closed() or not self._native_is_here():
+            return
+        longest_s = self._native.losses().longest_servo_call_s
+        if longest_s > self._reported_call_s:
+            self._reported_call_s = longest_s
+            warnings.warn(f"A call of the servo took {1000 * longest_s:.0f} ms. The force did not change meanwhile, and a "
+                          "real arm's poses were missed. Keep each call below 1 ms; Arm.losses counts the slow calls.",
+                          RuntimeWarning, stacklevel=3)
+
+    def _native_is_here(self) -> bool:
+        return self._process_id == os.getpid()
+
+    @property
+    def losses(self) -> Losses:
+        """Lost poses and slow calls of the servo since the arm was opened."""
+        return self._native.losses()
+
+    def send_test_pulse(self, motor: int, *, voltage_V: float | None = None, current_A: float | None = None,
+                        duration_s: float = 0.005) -> None:
+        """Sends a pulse of 0 to 0.1 s to motor 1, 2 or 3 in the state READY: a voltage, with the current loop off, or a
+        current. Returns when the board has started it; the arm then rests for the same time. Select the signals
+        current_1_A and duty_1 first, or record them. A current is sampled at the start of its control period, and a duty
+        acts from the next period on."""
+        if (voltage_V is None) == (current_A is None):
+            raise errors.BadArgument("A pulse needs either a voltage or a current. Give voltage_V or current_A.")
+        unit, amplitude = ("A", current_A) if voltage_V is None else ("V", voltage_V)
+        _call(self._native.send_test_pulse, motor, unit, amplitude, duration_s,
+              wants="the number of the motor, volts or amperes, and seconds")
 
     @property
     def servo_is_running(self) -> bool:
@@ -364,26 +421,33 @@ class Arm:
         return Samples(signals, values, periods, lost, self._servo_rate_Hz)
 
     @contextlib.contextmanager
-    def record(self, path: str | os.PathLike[str], *names: str) -> Iterator[Recording]:
+    def record(self, path: str | os.PathLike[str], *names: str, name: str = "", note: str = "") -> Iterator[Recording]:
         """Records these signals to a file (.h5 or .csv) until the end of `with`:
 
-            with arm.record("push.h5", "position_x_m", "force_x_N") as recording:
+            with arm.record("push.h5", "position_x_m", "force_x_N", name="subject 7") as recording:
+                arm.mark("stimulus")
                 arm.sleep(5)
-            print(recording.samples, recording.lost)
+            print(recording.samples, recording.lost, recording.complete)
 
+        The file also holds marks, buttons, force sources, shapes, faults, losses and parameter changes with board time.
         If the library has stopped the servo meanwhile, the end of `with` raises the cause.
         """
         recording = Recording(os.fspath(path))
         self.select_signals(*names)
         try:
+            _call(self._native.describe_recordings, name, note, wants="name and note as text")
             self._native.start_recording(recording.path)
             try:
                 yield recording
             finally:
-                recording.samples, recording.lost = self._native.stop_recording()
+                recording.samples, recording.lost, recording.complete = self._native.finish_recording()
         finally:
             self.select_signals()
         self._native.check_servo()
+
+    def mark(self, text: str) -> None:
+        """Marks the newest pose in the running recording. Raises Refused without a recording."""
+        _call(self._native.mark, text, wants="the text of the mark")
 
 
 def open(address: str | None = None, *, seed: int | None = None, arm: str | os.PathLike[str] | None = None,

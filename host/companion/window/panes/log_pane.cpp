@@ -24,7 +24,8 @@ namespace {
 using device::EventKind;
 
 constexpr std::array<const char*, device::event_kind_count + 1> shown_kinds{
-    "All events", "Marks", "Connections", "Force on and off", "Faults", "Parameters", "Losses"};
+    "All events", "Marks",  "Connections", "Force on and off", "Faults",
+    "Parameters", "Losses", "Buttons",     "Force sources",    "Shapes"};
 
 /// One row of the log.
 struct LogRow {

@@ -239,6 +239,7 @@ void RecordingPane::follow_recording(const std::vector<device::ScopeSamples>& sa
     recorder_->note(events[next_event_]);
   const bool went_away = !view.connected();
   if (!went_away && recorder_->status().running) return;
+  if (went_away) recorder_->miss_end();
   stop();
   if (went_away && last_status_->error.empty())
     last_status_->error = "The device was disconnected. The recording contains all samples until the disconnection.";

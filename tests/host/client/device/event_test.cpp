@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "host/client/device/event.hpp"
+#include "host/client/device/hand_events.hpp"
 
 using namespace inkwell;
 using namespace inkwell::device;
@@ -30,7 +31,7 @@ TEST_CASE("the force and each fault produce one event when they begin and one ev
   CHECK(on[0].kind == EventKind::force);
   CHECK(on[0].text == "The force is on.");
   CHECK(on[0].at_periods == 30);
-  CHECK(on[0].clock_utc.size() == 24);
+  CHECK(on[0].clock_utc.size() == 27);
 
   // The event has the board's fault period, not the period of the pose that reported the fault.
   const auto fault = events_between(pose(30, State::active), pose(70, State::fault, Fault::supply_low), 61);
@@ -73,12 +74,63 @@ TEST_CASE("a log keeps its newest events under their numbers") {
 
 TEST_CASE("a line of the log has clock, time, kind and text; kinds come back by their names") {
   CHECK(line_of({EventKind::fault, "supply_low: it is low.", "2026-11-23T22:15:34.123Z", 20'001}) ==
-        "2026-11-23T22:15:34.123Z       1.00005 s  fault       supply_low: it is low.\n");
+        "2026-11-23T22:15:34.123Z          1.00005 s  fault       supply_low: it is low.\n");
   CHECK(line_of({EventKind::connection, "The device was disconnected.", "", {}}) ==
-        "-                                      -  connection  The device was disconnected.\n");
+        "-                                         -  connection  The device was disconnected.\n");
   for (std::size_t i = 0; i < event_kind_count; ++i)
     CHECK(find_event_kind(name_of(static_cast<EventKind>(i))) == static_cast<EventKind>(i));
   CHECK_FALSE(find_event_kind("dance"));
+}
+
+TEST_CASE("pressed buttons and changed force sources are events at the time of their pose") {
+  HandEvents hand;
+  Pose pose{.state = State::active, .time_periods = 1000};
+  CHECK(hand.take(pose).empty());
+  pose.switches = 1;
+  pose.force_sources = 1;
+  pose.time_periods = 1020;
+  auto events = hand.take(pose);
+  REQUIRE(events.size() == 2);
+  CHECK(events[0].kind == EventKind::button);
+  CHECK(events[0].text == "Button 1 was pressed.");
+  CHECK(events[0].at_periods == 1020);
+  CHECK(events[1].kind == EventKind::source);
+  CHECK(events[1].text == "The hand feels walls.");
+  pose.switches = 2;
+  pose.time_periods = 1040;
+  events = hand.take(pose);
+  REQUIRE(events.size() == 2);
+  CHECK(events[0].text == "Button 1 was released.");
+  CHECK(events[1].text == "Button 2 was pressed.");
+
+  // A bouncing probe changes the sources with each pose; their events are at least 50 ms apart.
+  std::size_t sources = 0;
+  for (; pose.time_periods < 21'020; pose.time_periods += 20) {
+    pose.force_sources = static_cast<std::uint8_t>(5 - pose.force_sources);
+    sources += hand.take(pose).size();
+  }
+  CHECK(sources > 10);
+  CHECK(sources <= 20);
+  pose.force_sources = 6;
+  pose.time_periods += 2000;
+  events = hand.take(pose);
+  REQUIRE(events.size() == 1);
+  CHECK(events[0].text == "The hand feels shapes and program.");
+}
+
+TEST_CASE("the event of a shape contains all values of the shape") {
+  Shapes shapes;
+  shapes.planes[1] = Plane{{0.0f, 0.01f, -0.05f}, {0.0f, 0.0f, 1.0f}, {400.0f, 1.5f, 0.3f, 0.2f, 10.0f}};
+  shapes.sphere = Sphere{{0.0f, 0.0f, 0.02f}, 0.015f, {}};
+  const auto events = events_of_shapes(shapes, 50);
+  REQUIRE(events.size() == 2);
+  CHECK(events[0].kind == EventKind::shape);
+  CHECK(events[0].at_periods == 50);
+  CHECK(events[0].text ==
+        "Plane 2: point (0, 0.01, -0.05) m, normal (0, 0, 1), 400 N/m, 1.5 Ns/m, friction 0.3 and 0.2, life 10 s");
+  CHECK(events[1].text ==
+        "Sphere: center (0, 0, 0.02) m, radius 0.015 m, 800 N/m, 2 Ns/m, friction 0 and 0, life inf s");
+  CHECK(events_of_shapes({}, 50)[0].text == "All shapes were removed.");
 }
 
 TEST_CASE("an event has one line of printable text") {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <thread>
 
 #include <fcntl.h>
@@ -16,8 +17,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "host/client/recording/event_feed.hpp"
 #include "host/client/recording/recorder.hpp"
 #include "host/client/recording/recording.hpp"
+#include "host/client/recording/sha256.hpp"
 #include "host/client/recording/stored_recording.hpp"
 #include "host/client/recording/writer.hpp"
 
@@ -278,6 +281,91 @@ TEST_CASE("samples that were lost show as a gap and are counted") {
   CHECK(read(directory / "a.h5").lost() == 20);
 }
 
+TEST_CASE("a recording is complete only if nothing is missing") {
+  const TemporaryDirectory directory;
+  for (const std::string ending : {".h5", ".csv"}) {
+    const auto is_complete = [&](const std::string& name, const auto& use) {
+      Recorder recorder(directory / (name + ending), about());
+      recorder.push(samples(100, 10));
+      use(recorder);
+      const auto status = recorder.stop();
+      CHECK(read(directory / (name + ending)).complete == status.is_complete);
+      return status.is_complete;
+    };
+    CHECK(is_complete("whole", [](Recorder& recorder) { recorder.push(samples(110, 10)); }));
+    CHECK_FALSE(is_complete("lost", [](Recorder& recorder) { recorder.push(samples(111, 10)); }));
+    CHECK_FALSE(is_complete("unplugged", [](Recorder& recorder) { recorder.miss_end(); }));
+    CHECK_FALSE(is_complete("restarted", [](Recorder& recorder) { recorder.push(samples(0, 10)); }));
+  }
+}
+
+TEST_CASE("a recording states its name, its note, what recorded it, and the time of the computer") {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "arm.toml") << "abc";
+  const device::Information device{
+      .firmware_version = "0.1.0", .protocol_version = 1, .serial_number = "", .report = {}};
+  const auto described =
+      describe(device, protocol::default_parameters(), about().signals, "", false,
+               {.name = "subject 7", .note = "left hand", .image = {}, .arm_description = directory / "arm.toml"});
+  CHECK(described.created_utc.size() == std::string("2026-01-02T03:04:05.123456Z").size());
+  CHECK(described.library_sha256 == sha256_of_file("/proc/self/exe"));
+  const auto before_us =
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+          .count();
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    {
+      Recorder recorder(directory / name, described);
+      for (std::int64_t period = 0; period < 45'000; period += 1000) recorder.push(samples(period, 1000));
+    }
+    const auto recording = read(directory / name);
+    const auto& about = recording.information;
+    CHECK(about.name == "subject 7");
+    CHECK(about.note == "left hand");
+    CHECK(about.library_version == described.library_version);
+    CHECK(about.library_sha256 == described.library_sha256);
+    CHECK(about.image_sha256.empty());
+    CHECK(about.arm_sha256 == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    REQUIRE(recording.clock.size() == 3);
+    CHECK(recording.clock[0].period == 999);
+    CHECK(recording.clock[2].period == 40'999);
+    CHECK(recording.clock[0].utc_us >= before_us);
+    CHECK(recording.clock[2].utc_us < before_us + 60'000'000);
+  }
+}
+
+TEST_CASE("lost poses, lost samples and buttons are events of a recording") {
+  const TemporaryDirectory directory;
+  {
+    Recorder recorder(directory / "a.h5", about());
+    EventFeed feed(recorder);
+    device::Pose pose{.state = protocol::State::ready, .sequence = 10, .time_periods = 120};
+    recorder.push(samples(100, 50));
+    feed.take(pose);
+    pose.sequence = 14;
+    pose.time_periods = 200;
+    pose.switches = 1;
+    recorder.push(samples(160, 50));
+    feed.take(pose);
+    CHECK(feed.lost_poses() == 3);
+  }
+  const auto marks = read(directory / "a.h5").marks;
+  REQUIRE(marks.size() == 3);
+  CHECK(marks[0].text == "3 poses were lost.");
+  CHECK(marks[0].kind == device::EventKind::loss);
+  CHECK(marks[0].period == 200);
+  CHECK(marks[1].text == "Button 1 was pressed.");
+  CHECK(marks[2].text == "10 samples were lost.");
+}
+
+TEST_CASE("the hash of a file is the one that sha256sum prints") {
+  const auto hash = [](const std::string& text) { return sha256_of(std::as_bytes(std::span(text))); };
+  CHECK(hash("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(hash("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(hash(std::string(1'000'000, 'a')) == "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  CHECK(sha256_of_file("/no/such/file").empty());
+}
+
 TEST_CASE("marks of device events are sorted by control period and contain the kind and the clock of the event") {
   const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
@@ -303,7 +391,7 @@ TEST_CASE("marks of device events are sorted by control period and contain the k
     CHECK(marks[3].period == 1499);
     CHECK(marks[3].kind == device::EventKind::mark);
     const auto log = log_text(read(directory / name));
-    CHECK(log.find("2026-11-23T22:15:34.123Z       0.01170 s  parameter   wall_stiffness") != std::string::npos);
+    CHECK(log.find("2026-11-23T22:15:34.123Z          0.01170 s  parameter   wall_stiffness") != std::string::npos);
     CHECK(std::ranges::count(log, '\n') == 4);
   }
 }

@@ -574,6 +574,64 @@ INKWELL_API inkwell_result inkwell_start_recording(inkwell_arm* arm, const char*
 /* Completes the file and returns its number of samples and of lost samples; both may be NULL. */
 INKWELL_API inkwell_result inkwell_stop_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost);
 
+/* ---- the hand of a running virtual board ----------------------------------------------------------------------- */
+
+/* Connects the simulated hand of a virtual board that was opened as "usbip:...". `control` is the address of the
+ * board's control socket, "HOST:PORT" or "unix:PATH". The functions of the hand then work for this arm. */
+INKWELL_API inkwell_result inkwell_connect_virtual_hand(inkwell_arm* arm, const char* control);
+/* Does the same as inkwell_move_virtual_hand(), with a damping in Ns/m. */
+INKWELL_API inkwell_result inkwell_hold_virtual_hand(inkwell_arm* arm, const double target_m[3],
+                                                     double stiffness_N_per_m, double damping_Ns_per_m);
+
+/* A point of a path of the hand. */
+typedef struct inkwell_waypoint {
+  double after_s; /* board time from the call on */
+  double target_m[3];
+} inkwell_waypoint;
+
+/* Moves the target of a hand that holds the stylus through these points, smoothly and in rising order of time. */
+INKWELL_API inkwell_result inkwell_move_virtual_hand_along(inkwell_arm* arm, const inkwell_waypoint* path,
+                                                           size_t count);
+/* Writes the true values of the simulation as JSON text of at most `capacity` bytes with its terminating zero, and the
+ * size that the text needs to `size`. docs/virtual-board.md describes the values. */
+INKWELL_API inkwell_result inkwell_read_virtual_truth(inkwell_arm* arm, char* json, size_t capacity, size_t* size);
+
+/* ---- contents of a recording, losses, test pulses ------------------------------------------------------------- */
+
+/* Sets name and note of the recordings that start later; NULL or "" for none. A recording also holds buttons, force
+ * sources, shapes, faults, losses and parameter changes as events with board time, the time of the computer in
+ * microseconds, and versions and hashes of the library, the image and the arm description. */
+INKWELL_API inkwell_result inkwell_describe_recordings(inkwell_arm* arm, const char* name, const char* note);
+/* Marks the newest pose in the running recording. The file holds the first 240 bytes of the text. Returns
+ * INKWELL_REFUSED without a recording. */
+INKWELL_API inkwell_result inkwell_mark(inkwell_arm* arm, const char* text);
+/* Completes the file like inkwell_stop_recording(). Writes 1 to `is_complete` if nothing is missing: no sample was
+ * lost, and the link was not lost. The pointers may be NULL. */
+INKWELL_API inkwell_result inkwell_finish_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost,
+                                                    int* is_complete);
+
+/* Losses since the arm was opened. */
+typedef struct inkwell_losses {
+  uint64_t poses;                 /* sent by the board, but not received */
+  uint64_t poses_missed_by_servo; /* received while the servo was still being called */
+  uint64_t slow_servo_calls;      /* calls of the servo that took longer than 1 ms on the PC's clock */
+  double longest_servo_call_s;
+} inkwell_losses;
+
+INKWELL_API inkwell_result inkwell_get_losses(inkwell_arm* arm, inkwell_losses* losses);
+
+/* Unit of a test pulse. */
+typedef enum inkwell_pulse INKWELL_AS_INT {
+  INKWELL_PULSE_V = 0, /* a voltage, with the current loop off */
+  INKWELL_PULSE_A = 1  /* a current reference, at most the motor's limit */
+} inkwell_pulse;
+
+/* Sends one pulse of 0 to 0.1 s to motor 1, 2 or 3 in the state INKWELL_READY, and returns when the board has started
+ * it. The arm rests for the same time after it. The signals current_1_A and duty_1 show it: a current is sampled at
+ * the start of its control period, and a duty acts from the next period on. Select the signals first. */
+INKWELL_API inkwell_result inkwell_send_test_pulse(inkwell_arm* arm, int motor, inkwell_pulse unit, double amplitude,
+                                                   double duration_s);
+
 #ifdef __cplusplus
 }
 #endif

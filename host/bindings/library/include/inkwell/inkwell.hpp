@@ -258,6 +258,39 @@ class Arm {
     items.resize(std::min(count, items.size()));
     return items;
   }
+  // ---- the hand of a running virtual board ----
+  void connect_virtual_hand(const std::string& control) {
+    require(inkwell_connect_virtual_hand(get(), control.c_str()));
+  }
+  void hold_virtual_hand(const Vector& target_m, double stiffness_N_per_m, double damping_Ns_per_m) {
+    require(inkwell_hold_virtual_hand(get(), target_m.data(), stiffness_N_per_m, damping_Ns_per_m));
+  }
+  void move_virtual_hand_along(const std::vector<inkwell_waypoint>& path) {
+    require(inkwell_move_virtual_hand_along(get(), path.data(), path.size()));
+  }
+  std::string virtual_truth() const {
+    std::size_t size = 0;
+    require(inkwell_read_virtual_truth(get(), nullptr, 0, &size));
+    std::string json(size + 1024, '\0');  // the next text may be longer
+    require(inkwell_read_virtual_truth(get(), &json[0], json.size(), nullptr));
+    json.resize(json.find('\0'));
+    return json;
+  }
+
+  // ---- contents of a recording, losses, test pulses ----
+  void describe_recordings(const std::string& name, const std::string& note = "") {
+    require(inkwell_describe_recordings(get(), name.c_str(), note.c_str()));
+  }
+  void mark(const std::string& text) { require(inkwell_mark(get(), text.c_str())); }
+  inkwell_losses losses() const {
+    inkwell_losses losses{};
+    require(inkwell_get_losses(get(), &losses));
+    return losses;
+  }
+  void send_test_pulse(int motor, inkwell_pulse unit, double amplitude, double duration_s) {
+    require(inkwell_send_test_pulse(get(), motor, unit, amplitude, duration_s));
+  }
+
   inkwell_store store() const {
     inkwell_store store;
     require(inkwell_get_store(get(), &store));
