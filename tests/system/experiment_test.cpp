@@ -311,6 +311,31 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
   }
 }
 
+TEST_CASE("the experiment uses the given stiffness and damping, and does not overwrite its results") {
+  const TemporaryDirectory directory;
+  const std::vector<std::string> words{"experiment", "wall",      "--virtual", "--mode", "fast",          "--stiffness",
+                                       "1200",       "--damping", "3",         "--out",  directory.path()};
+  const auto result = run_program("inkwell", words);
+  INFO("output: ", result.out, result.err);
+  REQUIRE(result.exit_code == 0);
+  const auto summary = nlohmann::json::parse(std::ifstream(directory.file("summary.json")));
+  CHECK(summary.at("parameters").at("wall_stiffness_N_per_m") == 1200);
+  CHECK(summary.at("parameters").at("wall_damping_Ns_per_m") == 3);
+  const auto again = run_program("inkwell", words);
+  CHECK(again.exit_code != 0);
+  CHECK(again.err.find("recording.csv exists") != std::string::npos);
+}
+
+TEST_CASE("the experiment refuses a wall that the arm cannot reach before it starts") {
+  const TemporaryDirectory directory;
+  const auto result = run_program(
+      "inkwell", {"experiment", "wall", "--virtual", "--mode", "fast", "--wall", "z-", "--out", directory.path()});
+  INFO("output: ", result.out, result.err);
+  CHECK(result.exit_code != 0);
+  CHECK(result.err.find("cannot reach the wall z-") != std::string::npos);
+  CHECK(result.err.find("The hand pushes") == std::string::npos);
+}
+
 TEST_CASE("the experiment runs with the paper's arm too") {
   const TemporaryDirectory directory;
   const auto result =

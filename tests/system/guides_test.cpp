@@ -1,6 +1,7 @@
 // Tests the guides on the command line with the flashed firmware; the simulated hand acts as the user.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -16,8 +17,10 @@
 #include "boards/omni_driver/facts.hpp"
 #include "host/client/device/device.hpp"
 #include "host/client/device/virtual_board.hpp"
+#include "host/client/recording/recording.hpp"
 
 #include "tests/system/program.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace inkwell::tests;
 using namespace inkwell;
@@ -71,6 +74,25 @@ TEST_CASE("on another board the resistances are the motors' as well, without the
           doctest::Approx(board::bench_modules.shunt_ohm).epsilon(1e-6));
     CHECK(found_ohm == doctest::Approx(simulated_resistance_ohm()).scale(0).epsilon(0.05));
   }
+}
+
+TEST_CASE("current-loop tuning saves all pulses, and does not replace a file") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("pulses.h5");
+  const auto result = guide({"tune", "current-loop", "--motor", "1", "--out", file});
+  const auto pulses = recording::read(file);
+  CHECK(pulses.information.simulation);
+  CHECK(pulses.complete);
+  REQUIRE(pulses.marks.size() == 10);  // eight voltage pulses and two current steps
+  CHECK(pulses.marks[0].text == "motor 1: 1 V for 10 ms");
+  CHECK(pulses.marks[9].text == "motor 1: current step, suggested gains");
+  // The settled current follows from the measured resistance, which includes both switches of the bridge.
+  CHECK(result.at("motors")[0].at("resistance_includes") == "winding and both switches of the bridge");
+  const auto& current_A = pulses.column(protocol::Signal::current_1_A);
+  CHECK(*std::ranges::max_element(current_A, [](float a, float b) { return a < b || std::isnan(a); }) > 0.3f);
+  const auto again = run_program("inkwell", {"tune", "current-loop", "--virtual", "--yes", "--out", file});
+  CHECK(again.exit_code != 0);
+  CHECK(again.err.find("exists") != std::string::npos);
 }
 
 TEST_CASE("a wider bandwidth rises faster, and is applied when asked") {

@@ -14,6 +14,7 @@
 #include "host/client/recording/current_step.hpp"
 
 #include "host/client/guides/joint_motion.hpp"
+#include "host/client/guides/pulse_log.hpp"
 #include "host/client/guides/pulse_size.hpp"
 
 namespace inkwell::guides {
@@ -51,7 +52,9 @@ struct Tuning {
   std::vector<MotorCircuit> motors;     ///< in the order of options.motors
   std::optional<SuggestedGains> gains;
   std::vector<recording::CurrentStep> before, after;
+  PulseLog log;
 
+  explicit Tuning(CurrentLoopOptions chosen) : options(std::move(chosen)), log(options.pulses) {}
   void name_board(const std::string& name) {
     board_name = name;
     board = board::find_board(name);
@@ -102,6 +105,8 @@ class IdentifyMotor final : public Step {
 
   bool advance(const Observation& now, DevicePort& port) override {
     if (!recorder_->advance(*now.pose, port)) return false;
+    tuning_->log.add(now, recorder_->recording(),
+                     fmt::format("motor {}: {:g} V for {:g} ms", motor_, pulse_V_, 1e3f * voltage_pulse_s));
     pulses_.push_back(taken_pulse());
     if (pulses_.size() == 2) choose_voltage();
     if (pulses_.size() < 2 * (1 + pairs_of_pulses)) {
@@ -130,6 +135,7 @@ class IdentifyMotor final : public Step {
 
  private:
   void start_pulse(float voltage_V, const Observation& now, DevicePort& port) {
+    pulse_V_ = voltage_V;
     recorder_.emplace(Command::test_voltage, TestPulse{static_cast<std::uint8_t>(motor_), voltage_V, voltage_pulse_s},
                       std::vector<Signal>{of_number(Signal::current_1_A, motor_), of_number(Signal::duty_1, motor_),
                                           Signal::supply_V, of_number(Signal::joint_speed_1_rad_s, motor_)},
@@ -188,14 +194,16 @@ class IdentifyMotor final : public Step {
   void report(const MotorCircuit& circuit) {
     const auto motor_ohm = tuning_->motor_ohm(circuit);
     const std::string resistance =
-        motor_ohm ? fmt::format("{:.3f} ohm ({:.3f} ohm with the shunt)", *motor_ohm, circuit.resistance_ohm)
-                  : fmt::format("{:.3f} ohm with the shunt", circuit.resistance_ohm);
+        motor_ohm ? fmt::format("{:.3f} ohm with both switches of the bridge ({:.3f} ohm with the shunt)", *motor_ohm,
+                                circuit.resistance_ohm)
+                  : fmt::format("{:.3f} ohm with both switches of the bridge and the shunt", circuit.resistance_ohm);
     findings_->sentences.push_back(fmt::format(
         "Motor {}: R = {}, L = {:.4f} mH, time constant {:.0f} us, dead-time loss {:.2f} V, fit within {:.1f} mA.",
         motor_, resistance, 1e3 * circuit.inductance_H, 1e6 * circuit.inductance_H / circuit.resistance_ohm,
         circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
     findings_->details["motors"].push_back({{"motor", motor_},
                                             {"resistance_ohm", motor_ohm ? ordered_json(*motor_ohm) : nullptr},
+                                            {"resistance_includes", "winding and both switches of the bridge"},
                                             {"circuit_resistance_ohm", circuit.resistance_ohm},
                                             {"inductance_H", circuit.inductance_H},
                                             {"dead_time_voltage_V", circuit.dead_time_voltage_V},
@@ -207,7 +215,7 @@ class IdentifyMotor final : public Step {
   std::shared_ptr<Findings> findings_;
   int motor_;
   ParameterSet set_{};
-  float first_V_ = first_voltage_V, voltage_V_ = first_voltage_V;
+  float first_V_ = first_voltage_V, voltage_V_ = first_voltage_V, pulse_V_ = 0.0f;
   std::optional<PulseRecorder> recorder_;
   std::vector<VoltagePulse> pulses_;
 };
@@ -257,6 +265,9 @@ class TryGains final : public Step {
       start_pulse(now, port);
     }
     if (!recorder_->advance(*now.pose, port)) return false;
+    tuning_->log.add(now, recorder_->recording(),
+                     fmt::format("motor {}: current step, {} gains", tuning_->options.motors[steps().size()],
+                                 suggested_ ? "suggested" : "present"));
     take_step();
     if (steps().size() < tuning_->options.motors.size()) {
       start_pulse(now, port);
@@ -417,8 +428,7 @@ class TryGains final : public Step {
 
 Plan plan_current_loop(const Choices& choices) {
   Plan plan;
-  auto tuning = std::make_shared<Tuning>();
-  tuning->options = choices.current_loop;
+  auto tuning = std::make_shared<Tuning>(choices.current_loop);
   plan.steps.push_back(std::make_unique<RestInInkwell>(plan.findings, false));
   for (const int motor : tuning->options.motors)
     plan.steps.push_back(std::make_unique<IdentifyMotor>(tuning, plan.findings, motor));

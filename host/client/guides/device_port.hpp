@@ -17,6 +17,7 @@ struct Observation {
   bool connected = false;
   std::string message;  ///< state of the connection, with a remedy if available
   std::optional<device::Information> information;
+  bool is_simulation = false;
   std::optional<device::Pose> pose;  ///< the newest pose
   std::optional<protocol::ParameterSet> parameters;
   std::uint64_t parameters_revision = 0;  ///< increases with each read, which follows each transaction

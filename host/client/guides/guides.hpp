@@ -12,6 +12,7 @@
 // The window and the command line use this list.
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -41,6 +42,7 @@ inline constexpr double bandwidth_default_Hz = 800, bandwidth_minimum_Hz = 50, b
 struct CurrentLoopOptions {
   std::vector<int> motors{1, 2, 3};
   double bandwidth_Hz = bandwidth_default_Hz;
+  std::filesystem::path pulses;  ///< new recording of all pulses; empty: none
 };
 
 /// The user may choose these options before a guide starts. Each guide reads only the options that it uses.

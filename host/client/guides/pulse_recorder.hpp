@@ -24,6 +24,7 @@ class PulseRecorder {
   const std::vector<float>& column(protocol::Signal signal) const { return recording_.column(signal); }
   std::vector<double> values_of(protocol::Signal signal) const;
   std::size_t size() const { return recording_.size(); }
+  const recording::Recording& recording() const { return recording_; }
 
  private:
   enum class State : std::uint8_t { waits_for_scope, waits_for_end, done };

@@ -8,6 +8,7 @@ Observation observe(const device::Session& session) {
   now.connected = status.connection == device::Connection::connected;
   now.message = status.message;
   now.information = status.information;
+  now.is_simulation = status.is_simulation;
   now.pose = session.newest_pose();
   // The revision is read first, so that the parameters are at least as new as the revision.
   now.parameters_revision = session.parameters_revision();

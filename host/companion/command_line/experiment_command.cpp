@@ -15,6 +15,7 @@ namespace {
 struct WallCommandOptions {
   std::string output = "wall-experiment";
   std::string wall;
+  std::optional<double> stiffness_N_per_m, damping_Ns_per_m;
 };
 
 void print(const nlohmann::ordered_json& summary, const std::string& directory) {
@@ -42,9 +43,12 @@ void print(const nlohmann::ordered_json& summary, const std::string& directory) 
 }
 
 int run_wall(DeviceOptions options, const WallCommandOptions& command) {
+  experiment::check_has_no_experiment(command.output);
   options.is_strict = true;  // a result with a violated chip rule would be invalid
   ProgressBar progress;
-  experiment::WallOptions wall{.output_directory = command.output};
+  experiment::WallOptions wall{.output_directory = command.output,
+                               .stiffness_N_per_m = command.stiffness_N_per_m,
+                               .damping_Ns_per_m = command.damping_Ns_per_m};
   if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);
   constexpr auto mode = device::SimulationMode::exact;
   constexpr auto pace = BoardPace::as_asked;
@@ -83,10 +87,16 @@ void add_experiment_command(const CommandContext& context) {
   wall->add_option("--wall", wall_options->wall,
                    "Wall to push into: axis and side. Default: the wall in front of the arm")
       ->check(CLI::IsMember({"x-", "x+", "y-", "y+", "z-", "z+"}));
+  wall->add_option("--stiffness", wall_options->stiffness_N_per_m,
+                   "Stiffness of the wall during the experiment. Default: wall_stiffness_N_per_m of the arm")
+      ->type_name("N/m");
+  wall->add_option("--damping", wall_options->damping_Ns_per_m,
+                   "Damping of the wall during the experiment. Default: wall_damping_Ns_per_m of the arm")
+      ->type_name("Ns/m");
   add_examples(*wall,
                "inkwell experiment wall --virtual --out results\n"
                "inkwell experiment wall --virtual --arm boards/arms/paper.toml --out results-paper\n"
-               "inkwell experiment wall --wall y- --out results");
+               "inkwell experiment wall --wall y- --stiffness 1500 --damping 3 --out results-stiff");
   wall->callback([context, wall_options] {
     context.action = [&options = context.device, wall_options] { return run_wall(options, *wall_options); };
   });

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include "host/client/command_line/help.hpp"
+#include "host/client/recording/writer.hpp"
 
 #include "host/companion/command_line/guide_commands.hpp"
 
@@ -19,6 +20,19 @@ void add_loop_options(CLI::App& guide, guides::CurrentLoopOptions& loop) {
       ->type_name("HZ")
       ->check(number_within(guides::bandwidth_minimum_Hz, guides::bandwidth_maximum_Hz))
       ->capture_default_str();
+  guide
+      .add_option_function<std::string>(
+          "--out",
+          [&loop](const std::string& file) {
+            try {
+              recording::check_can_be_created(file);
+            } catch (const device::Error& error) {
+              throw UsageError(error.what());
+            }
+            loop.pulses = file;
+          },
+          "New recording of all pulses (.h5 or .csv), one after the other, with a mark for each pulse")
+      ->type_name("FILE");
 }
 
 }  // namespace
@@ -26,8 +40,9 @@ void add_loop_options(CLI::App& guide, guides::CurrentLoopOptions& loop) {
 void add_tune_command(const CommandContext& context) {
   auto* command = context.program.add_subcommand("tune", "Guides that determine parameters by measurement");
   command->require_subcommand(1);
-  add_examples(*command,
-               "inkwell tune current-loop\ninkwell tune current-loop --motor 2 --bandwidth 1500 --yes --apply");
+  add_examples(
+      *command,
+      "inkwell tune current-loop --out pulses.h5\ninkwell tune current-loop --motor 2 --bandwidth 1500 --yes --apply");
   add_guides(*command, context, "tune", [](CLI::App& guide, const guides::Offer& offer, GuideOptions& options) {
     if (&offer == &guides::current_loop_guide) add_loop_options(guide, options.choices.current_loop);
   });

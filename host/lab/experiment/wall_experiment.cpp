@@ -5,11 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "host/client/device/parameter_file.hpp"
 #include "host/client/recording/signals.hpp"
 #include "host/client/recording/write_text.hpp"
 #include "host/client/recording/writer.hpp"
 #include "host/lab/experiment/figures.hpp"
 #include "host/lab/experiment/paced_device.hpp"
+#include "host/lab/experiment/reach.hpp"
 #include "host/lab/experiment/simulated_columns.hpp"
 #include "host/lab/experiment/summary.hpp"
 #include "host/lab/experiment/summary_json.hpp"
@@ -221,18 +223,75 @@ void make_folder(const std::filesystem::path& directory) {
                                     directory.string(), code.message()));
 }
 
+/// Throws device::Error if the simulated hand cannot take the probe to the wall.
+void check_reach(const ParameterSet& parameters, BoxWall wall) {
+  constexpr double tolerance_m = 0.002;
+  for (const double along_m : {0.0, drag_m}) {
+    Vector3 target = middle_of_box_m(parameters);
+    target[static_cast<std::size_t>(wall.axis)] = contact_m(parameters, wall);
+    target[drag_axis(parameters, wall)] += along_m;
+    const double missing_m = distance_to_reach_m(parameters, target);
+    if (missing_m > tolerance_m)
+      throw device::Error(
+          fmt::format("The probe cannot reach the wall {}: the stops of the arm keep it {:.0f} mm away. Choose another "
+                      "wall with --wall, or move this wall with the parameters of the box.",
+                      wall_name(wall), 1e3 * missing_m));
+  }
+}
+
+/// Sets stiffness and damping of the walls until the object is destroyed.
+class LentWall {
+ public:
+  LentWall(device::Device& device, const WallOptions& options) : device_(device) {
+    const auto held = device.parameters();
+    std::vector<device::ParameterChange> changes;
+    const auto set = [&](Parameter parameter, const std::optional<double>& value) {
+      if (!value || held[parameter] == static_cast<float>(*value)) return;
+      changes.emplace_back(parameter, static_cast<float>(*value));
+      held_.emplace_back(parameter, held[parameter]);
+    };
+    set(Parameter::wall_stiffness_N_per_m, options.stiffness_N_per_m);
+    set(Parameter::wall_damping_Ns_per_m, options.damping_Ns_per_m);
+    for (const auto& [parameter, value] : changes) device::check_value(parameter, value);
+    if (!changes.empty()) device.set_parameters(changes);
+  }
+  ~LentWall() {
+    try {
+      if (!held_.empty()) device_.set_parameters(held_);
+    } catch (const device::Error&) {  // the device is gone, and with it the changed values
+    }
+  }
+  LentWall(const LentWall&) = delete;
+  LentWall& operator=(const LentWall&) = delete;
+
+ private:
+  device::Device& device_;
+  std::vector<device::ParameterChange> held_;
+};
+
 }  // namespace
+
+void check_has_no_experiment(const std::filesystem::path& directory) {
+  for (const char* name : {"recording.csv", "current-step.csv", "summary.json"})
+    if (std::filesystem::exists(directory / name))
+      throw device::Error(fmt::format("{} exists. Give another folder with --out, or remove that experiment.",
+                                      (directory / name).string()));
+}
 
 nlohmann::ordered_json run_wall_experiment(device::Device& device, device::ControlClient* hand,
                                            const WallOptions& options, const Progress& progress) {
   const auto& directory = options.output_directory;
+  check_has_no_experiment(directory);
   make_folder(directory);
+  const LentWall lent(device, options);
   Circumstances circumstances;
   circumstances.virtual_board = options.virtual_board;
   auto& about = circumstances.about;
   about = recording::describe(device.information(), device.parameters(), recording::signal_path(), options.arm,
                               options.simulation);
   const BoxWall wall = circumstances.wall = options.wall.value_or(forward_wall(about.parameters));
+
+  if (hand != nullptr) check_reach(about.parameters, wall);
 
   PacedDevice paced(device, hand);
   progress("Waiting for the stylus to rest in the inkwell.", 0.1);
