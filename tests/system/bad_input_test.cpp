@@ -262,6 +262,24 @@ TEST_CASE("parameters are saved to standard output, and come back from there") {
   CHECK_FALSE(std::filesystem::exists("-"));
 }
 
+TEST_CASE("a parameter file of another arm changes the arm only with consent") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("omni.toml"), tuning = directory.file("tuning.toml");
+  REQUIRE(run_program("inkwell", {"--virtual", "parameters", "save", file}).exit_code == 0);
+  const auto paper = (std::filesystem::path(build_directory()) / "../../boards/arms/paper.toml").string();
+  const std::vector<std::string> load{"--virtual", "--arm", paper, "--seed", "2", "parameters", "load", file};
+  check_refused(run_program("inkwell", load),
+                {"was saved from the arm", "This arm is", "omni_driver", "link_2_m", "inkwell_joint_3_rad", "--yes"});
+  auto agreed = load;
+  agreed.emplace_back("--yes");
+  CHECK(run_program("inkwell", agreed).exit_code == 0);
+
+  write_file(tuning, "[parameters]\nwall_stiffness_N_per_m = 600\nbox_minimum_x_m = -0.05\n");
+  auto tuned = load;
+  tuned.back() = tuning;
+  CHECK(run_program("inkwell", tuned).exit_code == 0);
+}
+
 TEST_CASE("parameters that were saved are not overwritten unless that is asked for") {
   const TemporaryDirectory directory;
   const auto file = directory.file("calibration.toml");

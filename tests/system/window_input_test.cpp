@@ -138,6 +138,30 @@ TEST_CASE(
   CHECK(rig.close_and_read_parameters() == expected);
 }
 
+TEST_CASE("a parameter file that changes the arm is loaded in the window only after a question") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("other.toml");
+  std::ofstream(file) << "[parameters]\nmotor_1_reversed = 1\nforce_limit_N = 2.25\n";
+  WindowRig rig;
+  const auto load = [&] {
+    rig.click("tuning/Load");
+    rig.enter("choose a file/path", file);
+    rig.click("choose a file/Load");
+    rig.wait_until("the window asks", [&](const Sight& now) { return now.says("motor_1_reversed"); });
+  };
+  load();
+  rig.click("tuning/Keep arm");
+  rig.wait_until("nothing was loaded", [&](const Sight& now) { return now.says("Nothing was loaded"); });
+  load();
+  const auto before = rig.look().applied_at_periods();
+  rig.click("tuning/Change arm");
+  rig.wait_until("the device took them", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  auto expected = rig.parameters_at_start();
+  expected[Parameter::motor_1_reversed] = 1.0f;
+  expected[Parameter::force_limit_N] = 2.25f;
+  CHECK(rig.close_and_read_parameters() == expected);
+}
+
 TEST_CASE("a damaged parameter file is reported, and the device retains its values") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("damaged.toml");

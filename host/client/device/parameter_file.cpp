@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -24,6 +25,18 @@ std::string range_text(Parameter parameter) {
   const auto& row = info(parameter);
   return fmt::format("{} to {}{}{}", format_value(parameter, row.minimum), format_value(parameter, row.maximum),
                      row.unit.empty() ? "" : " ", row.unit);
+}
+
+/// Returns a TOML string.
+std::string quoted(const std::string& text) {
+  std::ostringstream stream;
+  stream << toml::value<std::string>(text);
+  return stream.str();
+}
+
+std::string described(const ParameterOrigin& origin) {
+  return origin.board_name.empty() ? origin.serial_number
+                                   : fmt::format("{} on the board {}", origin.serial_number, origin.board_name);
 }
 
 }  // namespace
@@ -94,6 +107,9 @@ ParameterFile parse_parameters(std::string_view toml_text, const std::string& fi
         "{} has no [parameters] section. Create a parameter file with `inkwell parameters save FILE`.", file_name));
 
   ParameterFile file;
+  const auto origin = std::as_const(document)["saved_from"];
+  file.origin = {protocol::plain_text(origin["serial_number"].value_or(std::string_view())),
+                 protocol::plain_text(origin["board"].value_or(std::string_view()))};
   for (const auto& [key, node] : *section) {
     const auto parameter = protocol::find_parameter(key.str());
     if (!parameter) {
@@ -124,11 +140,15 @@ ParameterFile load_parameters(const std::filesystem::path& file) {
   return parse_parameters(text.str(), file.string());
 }
 
-std::string format_parameters(const protocol::ParameterSet& parameters) {
+std::string format_parameters(const protocol::ParameterSet& parameters, const ParameterOrigin& origin) {
   std::string text = fmt::format(
       "# Parameters of an Inkwell haptic arm. `inkwell parameters load FILE` sends them to the "
-      "device.\n\nprotocol_version = {}\n\n[parameters]\n",
+      "device.\n\nprotocol_version = {}\n",
       protocol::protocol_version);
+  if (origin != ParameterOrigin{})
+    text += fmt::format("\n[saved_from]\nserial_number = {}\nboard = {}\n", quoted(origin.serial_number),
+                        quoted(origin.board_name));
+  text += "\n[parameters]\n";
   std::string_view group;
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     const auto parameter = static_cast<Parameter>(i);
@@ -141,9 +161,10 @@ std::string format_parameters(const protocol::ParameterSet& parameters) {
   return text;
 }
 
-void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters) {
+void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters,
+                     const ParameterOrigin& origin) {
   try {
-    local::replace_file(file, format_parameters(parameters));
+    local::replace_file(file, format_parameters(parameters, origin));
   } catch (const std::system_error& error) {
     throw Error(fmt::format("The file {} cannot be written: {}. Check the folder, your permission and the free space.",
                             file.string(), error.code().message()));
@@ -155,6 +176,33 @@ std::vector<ParameterDifference> compare(const ParameterFile& file, const protoc
   for (const auto& [parameter, value] : file.changes)
     if (device[parameter] != value) differences.push_back({parameter, value, device[parameter]});
   return differences;
+}
+
+std::vector<ParameterDifference> compare_arm(const ParameterFile& file, const protocol::ParameterSet& device) {
+  auto differences = compare(file, device);
+  // Users change the box for each task, although every arm description contains a box.
+  std::erase_if(differences, [](const ParameterDifference& difference) {
+    const auto& row = info(difference.parameter);
+    return !row.belongs_to_arm || row.group == "box";
+  });
+  return differences;
+}
+
+ParameterOrigin origin_of(const Information& information) {
+  return {information.serial_number, information.board_name};
+}
+
+std::string origin_text(const ParameterOrigin& file, const ParameterOrigin& device) {
+  if (file.serial_number.empty()) return "The file does not state the arm of its values.";
+  if (file == device) return "The file was saved from this arm.";
+  return fmt::format("The file was saved from the arm {}. This arm is {}.", described(file), described(device));
+}
+
+std::string difference_text(const ParameterDifference& difference) {
+  const auto& row = info(difference.parameter);
+  return fmt::format("{:<34} file {:>12}   device {:>12} {}", row.name,
+                     format_value(difference.parameter, difference.in_file),
+                     format_value(difference.parameter, difference.in_device), row.unit);
 }
 
 }  // namespace inkwell::device

@@ -12,9 +12,17 @@
 
 namespace inkwell::device {
 
+/// The arm and the board whose parameters a file contains. Empty texts are unknown.
+struct ParameterOrigin {
+  std::string serial_number;
+  std::string board_name;
+  bool operator==(const ParameterOrigin&) const = default;
+};
+
 struct ParameterFile {
   std::vector<ParameterChange> changes;  ///< in the order of the table
   std::vector<std::string> unknown;      ///< names that this version does not define
+  ParameterOrigin origin;
 };
 
 struct ParameterDifference {
@@ -29,11 +37,21 @@ ParameterFile parse_parameters(std::string_view toml, const std::string& file_na
 ParameterFile load_parameters(const std::filesystem::path& file);
 
 /// Formats all parameters by group. Comments state unit, range and help.
-std::string format_parameters(const protocol::ParameterSet& parameters);
+std::string format_parameters(const protocol::ParameterSet& parameters, const ParameterOrigin& origin = {});
 /// Writes a temporary file and renames it. A full disk therefore does not destroy the old file.
-void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters);
+void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters,
+                     const ParameterOrigin& origin = {});
 
 std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device);
+/// Returns the differences in geometry, directions, motors and calibration. These values belong to one arm, so a file
+/// overwrites them only if the user agrees.
+std::vector<ParameterDifference> compare_arm(const ParameterFile& file, const protocol::ParameterSet& device);
+/// Returns the origin of the device's parameters.
+ParameterOrigin origin_of(const Information& information);
+/// Returns a sentence that states whether the file belongs to this arm.
+std::string origin_text(const ParameterOrigin& file, const ParameterOrigin& device);
+/// Returns a line with the name, both values and the unit.
+std::string difference_text(const ParameterDifference& difference);
 
 /// Returns the shortest text that represents this value exactly.
 std::string format_value(protocol::Parameter parameter, float value);

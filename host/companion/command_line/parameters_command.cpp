@@ -160,16 +160,34 @@ int save(const DeviceOptions& options, const std::string& file, bool overwrite) 
   const bool is_standard_output = file == "-";
   if (!is_standard_output && !overwrite) check_is_free(file);
   const auto connection = connect(options);
+  const auto parameters = connection.device->parameters();
+  const auto origin = device::origin_of(connection.device->information());
   if (is_standard_output) {
-    fmt::print("{}", device::format_parameters(connection.device->parameters()));
+    fmt::print("{}", device::format_parameters(parameters, origin));
     return 0;
   }
-  device::save_parameters(file, connection.device->parameters());
+  device::save_parameters(file, parameters, origin);
   if (options.json)
     fmt::print("{}\n", ordered_json{{"file", file}, {"parameters", protocol::known_parameters().size()}}.dump());
   else
     fmt::print("{} parameters were written to {}.\n", protocol::known_parameters().size(), file);
   return 0;
+}
+
+/// Asks before values that belong to one arm are overwritten.
+void ask_for_arm(const device::ParameterFile& loaded, device::Device& device, const std::string& file) {
+  const auto differences = compare_arm(loaded, device.parameters());
+  if (differences.empty()) return;
+  std::string consequence = fmt::format("{} changes the arm's geometry, directions, motors or calibration. {}", file,
+                                        origin_text(loaded.origin, origin_of(device.information())));
+  for (const auto& difference : differences) consequence += "\n  " + difference_text(difference);
+  if (!agrees(consequence, "This change of the arm")) throw device::Error("Nothing was sent.");
+}
+
+int load(const DeviceOptions& options, const std::string& file, bool store, bool is_agreed) {
+  const auto [loaded, connection] = load_and_complain(options, file);
+  if (!is_agreed) ask_for_arm(loaded, *connection->device, file);
+  return send(options, *connection, loaded.changes, store);
 }
 
 int show_differences(const DeviceOptions& options, const std::string& file) {
@@ -181,9 +199,7 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
     if (options.json)
       json.push_back({{"name", row.name}, {"file", difference.in_file}, {"device", difference.in_device}});
     else
-      fmt::print("{:<34} file {:>12}   device {:>12} {}\n", row.name,
-                 format_value(difference.parameter, difference.in_file),
-                 format_value(difference.parameter, difference.in_device), row.unit);
+      fmt::print("{}\n", difference_text(difference));
   }
   if (options.json)
     fmt::print("{}\n", json.dump(2));
@@ -233,14 +249,13 @@ void add_get_and_set(const Subcommands& subcommands, const DeviceOptions& option
 
 void add_file_commands(const Subcommands& subcommands, const DeviceOptions& options) {
   const auto file = std::make_shared<std::string>();
-  subcommands
-      .add_change("load", "Sends the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
-                  [&options, file, store = subcommands.store] {
-                    const auto [loaded, connection] = load_and_complain(options, *file);
-                    return send(options, *connection, loaded.changes, *store);
-                  })
-      ->add_option("FILE", *file, "File written by `inkwell parameters save`")
-      ->required();
+  const auto yes = std::make_shared<bool>(false);
+  auto* load_command = subcommands.add_change(
+      "load", "Sends the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
+      [&options, file, yes, store = subcommands.store] { return load(options, *file, *store, *yes); });
+  load_command->add_option("FILE", *file, "File written by `inkwell parameters save`")->required();
+  load_command->add_flag("--yes", *yes,
+                         "Agree in advance to change the arm's geometry, directions, motors and calibration");
   const auto overwrite = std::make_shared<bool>(false);
   auto* save_command =
       subcommands.add("save", "Writes the device's parameters to a TOML file",

@@ -128,20 +128,12 @@ int restore(const DeviceOptions& options) {
   return 0;
 }
 
-bool agrees() {
-  local::print_error(
-      "This erases all stored parameters, including the calibration of the arm. To save them to a file first, "
-      "use `inkwell parameters save FILE`.\n");
-  if (isatty(STDIN_FILENO) != 1)
-    throw UsageError("A factory reset needs your consent, but standard input is not a terminal. Add --yes to agree.");
-  local::print_error("Type yes to continue: ");
-  std::string line;
-  std::getline(std::cin, line);
-  return line == "yes" || line == "y";
-}
-
 int reset(const DeviceOptions& options, bool is_agreed) {
-  if (!is_agreed && !agrees()) throw device::Error("Nothing was erased.");
+  if (!is_agreed &&
+      !agrees("This erases all stored parameters, including the calibration of the arm. To save them to a file first, "
+              "use `inkwell parameters save FILE`.",
+              "A factory reset"))
+    throw device::Error("Nothing was erased.");
   const auto connection = connect(options);
   factory_reset(*connection.device);
   print_result(options, *connection.device, "The stored parameters are erased, and every parameter has its default.");
@@ -149,6 +141,17 @@ int reset(const DeviceOptions& options, bool is_agreed) {
 }
 
 }  // namespace
+
+bool agrees(std::string_view consequence, std::string_view action) {
+  local::print_error("{}\n", consequence);
+  if (isatty(STDIN_FILENO) != 1)
+    throw UsageError(
+        fmt::format("{} needs your consent, but standard input is not a terminal. Add --yes to agree.", action));
+  local::print_error("Type yes to continue: ");
+  std::string line;
+  std::getline(std::cin, line);
+  return line == "yes" || line == "y";
+}
 
 void print_unstored(const DeviceOptions& options, bool is_stored) {
   if (!options.is_virtual || (is_stored && !options.flash.empty())) return;

@@ -86,6 +86,7 @@ class TuningPane final : public Pane {
       : desk_(around.desk),
         store_bar_(around.desk),
         file_(around.parameters_file),
+        has_own_board_(around.simulated_arm.has_value()),
         to_send_(around.parameters_to_send) {}
 
   std::string_view title() const override { return "Tuning"; }
@@ -115,13 +116,18 @@ class TuningPane final : public Pane {
   void choose_file(FileTask task);
   /// Loads a file as one undo step and shows the result in the pane.
   void load(const std::filesystem::path& file, ParameterEditor& editor, double now_s);
+  /// Draws a question if a file would overwrite values that belong to one arm.
+  void draw_question(const PaneFrame& frame);
+  void send(const device::ParameterFile& loaded, ParameterEditor& editor, double now_s);
   void save(const std::filesystem::path& file, const ParameterEditor& editor);
 
   DeviceDesk& desk_;
   StoreBar store_bar_;
-  std::vector<Parameter> not_stored_;  ///< in this frame
-  std::filesystem::path& file_;        ///< last file that was loaded or saved
-  std::filesystem::path to_send_;      ///< sent once a device is connected; empty: none or already sent
+  std::vector<Parameter> not_stored_;             ///< in this frame
+  std::filesystem::path& file_;                   ///< last file that was loaded or saved
+  std::optional<device::ParameterFile> waiting_;  ///< loaded from `file_`, waits for the user's agreement
+  const bool has_own_board_;
+  std::filesystem::path to_send_;  ///< sent once a device is connected; empty: none or already sent
   ValueFields fields_;
   FileTask task_ = FileTask::load;
   FileChooser chooser_;
@@ -143,24 +149,57 @@ void TuningPane::follow(const PaneNews& news) {
 void TuningPane::load(const std::filesystem::path& file, ParameterEditor& editor, double now_s) {
   file_ = file;
   note_edit(std::nullopt);
+  waiting_.reset();
   try {
-    const device::ParameterFile loaded = device::load_parameters(file);
-    editor.apply("load " + file.filename().string(), loaded.changes, now_s);
-    messages_ = {fmt::format("Loaded {} values from {}.", loaded.changes.size(), file.filename().string())};
-    for (const std::string& name : loaded.unknown)
-      messages_.push_back(fmt::format("The parameter {} is unknown in this version and was ignored.", name));
-    message_is_error_ = false;
+    device::ParameterFile loaded = device::load_parameters(file);
+    if (has_own_board_ || compare_arm(loaded, editor.shown()).empty())
+      send(loaded, editor, now_s);
+    else
+      waiting_ = std::move(loaded);
   } catch (const device::Error& error) {
     messages_ = {error.what()};
     message_is_error_ = true;
   }
 }
 
+void TuningPane::send(const device::ParameterFile& loaded, ParameterEditor& editor, double now_s) {
+  editor.apply("load " + file_.filename().string(), loaded.changes, now_s);
+  messages_ = {fmt::format("Loaded {} values from {}.", loaded.changes.size(), file_.filename().string())};
+  for (const std::string& name : loaded.unknown)
+    messages_.push_back(fmt::format("The parameter {} is unknown in this version and was ignored.", name));
+  message_is_error_ = false;
+}
+
+void TuningPane::draw_question(const PaneFrame& frame) {
+  if (!waiting_ || !frame.editor.known()) return;
+  const Style& style = frame.style;
+  const auto differences = compare_arm(*waiting_, frame.editor.shown());
+  std::string names;
+  for (const auto& difference : differences)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", protocol::info(difference.parameter).name);
+  const auto& information = desk_.view().status.information;
+  ImGui::PushFont(style.fonts.caption);
+  wrapped_text(
+      style.palette->caution,
+      fmt::format(
+          "{} changes the arm's geometry, directions, motors or calibration. {} Values: {}.", file_.filename().string(),
+          origin_text(waiting_->origin, information ? origin_of(*information) : device::ParameterOrigin{}), names));
+  ImGui::PopFont();
+  const bool agrees =
+      coloured_button("Change arm", style.palette->caution, style.palette->pane, {style.points(110), 0});
+  ImGui::SameLine();
+  const bool cancels = button("Keep arm", {style.points(110), 0});
+  if (agrees) send(*waiting_, frame.editor, frame.now_s);
+  if (cancels) messages_ = {"Nothing was loaded."};
+  if (agrees || cancels) waiting_.reset();
+}
+
 void TuningPane::save(const std::filesystem::path& file, const ParameterEditor& editor) {
   file_ = file;
   messages_.clear();
   try {
-    device::save_parameters(file, editor.shown());
+    const auto& information = desk_.view().status.information;
+    device::save_parameters(file, editor.shown(), information ? origin_of(*information) : device::ParameterOrigin{});
     messages_ = {fmt::format("Saved all parameters to {}.", file.string())};
     message_is_error_ = false;
   } catch (const device::Error& error) {
@@ -430,6 +469,7 @@ void TuningPane::draw(const PaneFrame& frame) {
   if (frame.is_replay)
     wrapped_text(frame.style.palette->caution,
                  "These parameters are from the recording. Close the replay to tune the device.");
+  draw_question(frame);
   not_stored_ = frame.is_replay ? std::vector<Parameter>{} : not_stored(desk_.view());
   const float store_height = frame.is_replay ? 0.0f : store_bar_.height(ImGui::GetContentRegionAvail().x, frame.style);
   if (ImGui::BeginChild("parameters", {0, -store_height}, false, ImGuiWindowFlags_NavFlattened)) {

@@ -41,6 +41,30 @@ TEST_CASE("differences between a file and a device are named") {
   CHECK(differences[0].in_device == protocol::info(Parameter::force_limit_N).default_value);
 }
 
+TEST_CASE("a parameter file records its arm and its board") {
+  const device::ParameterOrigin origin{"3932", "omni_driver"}, other{"0011", "bench_modules"};
+  const TemporaryDirectory directory;
+  device::save_parameters(directory / "soft.toml", protocol::default_parameters(), origin);
+  const auto loaded = device::load_parameters(directory / "soft.toml");
+  CHECK(loaded.origin == origin);
+  CHECK(loaded.changes.size() == protocol::parameter_count);
+  CHECK(device::origin_text(loaded.origin, origin) == "The file was saved from this arm.");
+  CHECK(device::origin_text(loaded.origin, other) ==
+        "The file was saved from the arm 3932 on the board omni_driver. This arm is 0011 on the board bench_modules.");
+  CHECK(device::origin_text({}, origin) == "The file does not state the arm of its values.");
+}
+
+TEST_CASE("values that belong to one arm are compared separately") {
+  const auto file = device::parse_parameters(
+      "[parameters]\nforce_limit_N = 1.5\nbox_minimum_x_m = -0.01\nmotor_1_reversed = 1\nlink_2_m = 0.2\n"
+      "gimbal_1_offset_rad = 0.5\n",
+      "other.toml");
+  std::vector<Parameter> differing;
+  for (const auto& difference : compare_arm(file, protocol::default_parameters()))
+    differing.push_back(difference.parameter);
+  CHECK(differing == std::vector{Parameter::link_2_m, Parameter::motor_1_reversed, Parameter::gimbal_1_offset_rad});
+}
+
 TEST_CASE("unknown parameter names are returned and not refused") {
   const auto file =
       device::parse_parameters("[parameters]\nforce_limit_N = 2\nmagic_N = 1\n[motor]\nx = 1\n", "new.toml");
