@@ -16,6 +16,7 @@
 #include "host/companion/window/frame/imgui_frames.hpp"
 #include "host/companion/window/frame/inspection.hpp"
 #include "host/companion/window/window_settings.hpp"
+#include "protocol/plain_text.hpp"
 
 #include "host/companion/window/companion.hpp"
 
@@ -23,9 +24,8 @@ namespace inkwell::window {
 
 namespace {
 
-WindowSettings settings_at_start(const WindowOptions& options) {
-  WindowSettings settings;
-  if (options.persist_settings) settings = read_settings(window_settings_path());
+WindowSettings settings_at_start(const WindowOptions& options, const WindowSettings& read) {
+  WindowSettings settings = read;
   if (options.theme) settings.theme = *options.theme;
   if (options.layout.empty()) return settings;
   const ScopeLayout* layout = find_layout(options.layout, settings.scope.own_layouts);
@@ -36,10 +36,18 @@ WindowSettings settings_at_start(const WindowOptions& options) {
   return settings;
 }
 
-void keep(const WindowSettings& settings) {
+WindowSettings stored_settings(const WindowOptions& options) {
+  if (!options.persist_settings) return {};
+  const LoadedSettings loaded = read_settings(window_settings_path());
+  if (!loaded.problem.empty()) local::print_error("{}\n", protocol::plain_lines(loaded.problem));
+  return loaded.settings;
+}
+
+void keep(const WindowSettings& settings, const WindowSettings& before) {
   const auto file = window_settings_path();
   if (file.empty()) return;
-  if (const std::string problem = write_settings(settings, file); !problem.empty()) local::print_error("{}\n", problem);
+  const std::string problem = write_settings(settings, file, before);
+  if (!problem.empty()) local::print_error("{}\n", problem);
 }
 
 /// Returns an error message; empty on success.
@@ -53,7 +61,8 @@ std::string start_virtual_board(WindowOptions& options) {
 }
 
 void run(WindowOptions options) {
-  WindowSettings settings = settings_at_start(options);
+  const WindowSettings read = stored_settings(options);
+  WindowSettings settings = settings_at_start(options, read);
   end_loop_at_signals();
   Display display({options.width, options.height}, options.scale, "Inkwell");
   std::optional<Inspection> inspection;  // outlives the frame loops, so that no request is lost between two loops
@@ -71,7 +80,7 @@ void run(WindowOptions options) {
     if (!companion.is_over()) break;
     problem = start_virtual_board(options);
   }
-  if (options.persist_settings) keep(settings);
+  if (options.persist_settings) keep(settings, read);
 }
 
 /// Each frame allocates and frees some megabytes. Retaining the memory prevents page faults, which would take a third

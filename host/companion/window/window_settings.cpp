@@ -7,8 +7,10 @@
 #include <optional>
 #include <sstream>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include "host/client/local/replaced_file.hpp"
@@ -111,72 +113,9 @@ std::optional<ScopeLayout> layout_from(const toml::table& table) {
   return layout;
 }
 
-}  // namespace
-
-std::filesystem::path window_settings_path() {
-  if (const char* configuration = std::getenv("XDG_CONFIG_HOME"); configuration != nullptr && *configuration == '/')
-    return std::filesystem::path(configuration) / "inkwell" / "window.toml";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
-    return std::filesystem::path(home) / ".config" / "inkwell" / "window.toml";
-  return {};
-}
-
-WindowSettings read_settings(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse_settings(text.str());
-}
-
-std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::filesystem::create_directories(file.parent_path(), ignored);
-  try {
-    local::replace_file(file, format_settings(settings));
-    return {};
-  } catch (const std::system_error& error) {
-    return fmt::format("The window settings could not be written to {}: {}. Check that the disk is not full.",
-                       file.string(), error.code().message());
-  }
-}
-
-std::string format_settings(const WindowSettings& settings) {
-  toml::array own_layouts;
-  for (const ScopeLayout& layout : settings.scope.own_layouts.all())
-    own_layouts.push_back(toml::table{{"name", layout.name},
-                                      {"columns", layout.columns},
-                                      {"plots", to_toml(layout.plots)},
-                                      {"formulas", to_toml(layout.formulas)}});
-  const toml::table file{{"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
-                                                {"tuning_width", settings.column_width},
-                                                {"scope_part", settings.scope_part},
-                                                {"scope_is_shown", settings.scope_is_shown},
-                                                {"parameters_file", settings.parameters_file.string()}}},
-                         {"scope", toml::table{{"name", settings.scope.layout.name},
-                                               {"columns", settings.scope.layout.columns},
-                                               {"span_s", settings.scope.span_s},
-                                               {"plots", to_toml(settings.scope.layout.plots)},
-                                               {"formulas", to_toml(settings.scope.layout.formulas)},
-                                               {"layouts", std::move(own_layouts)}}},
-                         {"trigger", toml::table{{"mode", name_of(settings.scope.trigger.mode, trigger_mode_names)},
-                                                 {"signal", protocol::info(settings.scope.trigger.signal).name},
-                                                 {"edge", name_of(settings.scope.trigger.edge, trigger_edge_names)},
-                                                 {"level", settings.scope.trigger.level},
-                                                 {"pre_trigger", settings.scope.trigger.pre_trigger}}}};
-  std::ostringstream text;
-  text << file << '\n';
-  return text.str();
-}
-
-WindowSettings parse_settings(const std::string& text) {
+/// Converts settings of the file. Each invalid value is replaced by its default.
+WindowSettings settings_from(const toml::table& root) {
   WindowSettings settings;
-  toml::table file;
-  try {
-    file = toml::parse(text);
-  } catch (const toml::parse_error&) {
-    return settings;
-  }
-  const toml::table& root = file;
   const auto window = root["window"];
   read_name(window["theme"], theme_names, settings.theme);
   read_number(window["tuning_width"], WindowSettings::column_width_minimum, points_maximum, settings.column_width);
@@ -206,5 +145,180 @@ WindowSettings parse_settings(const std::string& text) {
   read_number(trigger["pre_trigger"], 0.0f, 1.0f, settings.scope.trigger.pre_trigger);
   return settings;
 }
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+struct ReadText {
+  toml::table table;
+  std::string problem;  ///< states the first line that is not TOML
+};
+
+/// Replaces the last line up to `line` that has text by an empty line. Returns false if no such line exists.
+bool remove_line(std::vector<std::string>& lines, std::size_t line) {
+  for (std::size_t i = std::min(line, lines.size()); i > 0; --i)
+    if (lines[i - 1].find_first_not_of(" \t\r") != std::string::npos) {
+      lines[i - 1].clear();
+      return true;
+    }
+  return false;
+}
+
+/// Reads TOML, and ignores the lines that are not TOML.
+ReadText read_lines(const std::string& text) {
+  ReadText read;
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  for (;;) {
+    try {
+      read.table = toml::parse(fmt::format("{}\n", fmt::join(lines, "\n")));
+      return read;
+    } catch (const toml::parse_error& error) {
+      const auto line = static_cast<std::size_t>(error.source().begin.line);
+      if (read.problem.empty()) read.problem = fmt::format("line {}: {}", line, error.description());
+      if (!remove_line(lines, line) && !remove_line(lines, lines.size())) return read;
+    }
+  }
+}
+
+std::string format(const toml::table& table) {
+  std::ostringstream text;
+  text << table << '\n';
+  return text.str();
+}
+
+toml::table& section(toml::table& file, std::string_view name) {
+  if (!file[name].is_table()) file.insert_or_assign(name, toml::table{});
+  return *file[name].as_table();
+}
+
+toml::table to_toml(const ScopeLayout& layout) {
+  return toml::table{{"name", layout.name},
+                     {"columns", layout.columns},
+                     {"plots", to_toml(layout.plots)},
+                     {"formulas", to_toml(layout.formulas)}};
+}
+
+bool is_equal(const ScopeLayout* one, const ScopeLayout* other) {
+  return one == other || (one != nullptr && other != nullptr && *one == *other);
+}
+
+/// Combines the layouts of the file with the changes of this window.
+toml::array combine(const toml::array* file, const OwnLayouts& own, const OwnLayouts& before) {
+  toml::array combined;
+  std::vector<std::string> in_file;
+  if (file != nullptr)
+    for (const auto& each : *file) {
+      const toml::table* table = each.as_table();
+      const std::string name = table == nullptr ? std::string() : (*table)["name"].value_or(std::string());
+      const ScopeLayout* layout = own.find(name);
+      in_file.push_back(name);
+      if (is_equal(layout, before.find(name)))
+        combined.push_back(each);
+      else if (layout != nullptr)
+        combined.push_back(to_toml(*layout));
+    }
+  for (const ScopeLayout& layout : own.all())
+    if (std::ranges::find(in_file, layout.name) == in_file.end() && !is_equal(&layout, before.find(layout.name)))
+      combined.push_back(to_toml(layout));
+  return combined;
+}
+
+/// Writes the settings that differ from `before` into the table. The other settings, which another window or another
+/// version may have written, remain. Without `before`, writes all settings.
+void apply(toml::table& file, const WindowSettings& settings, const WindowSettings* before) {
+  const auto set = [&](std::string_view where, std::string_view key, auto member, auto convert) {
+    if (before == nullptr || member(settings) != member(*before))
+      section(file, where).insert_or_assign(key, convert(member(settings)));
+  };
+  const auto as_it_is = [](auto value) { return value; };
+  set(
+      "window", "theme", [](const WindowSettings& of) { return of.theme; },
+      [](Theme theme) { return name_of(theme, theme_names); });
+  set(
+      "window", "tuning_width", [](const WindowSettings& of) { return of.column_width; }, as_it_is);
+  set(
+      "window", "scope_part", [](const WindowSettings& of) { return of.scope_part; }, as_it_is);
+  set(
+      "window", "scope_is_shown", [](const WindowSettings& of) { return of.scope_is_shown; }, as_it_is);
+  set(
+      "window", "parameters_file", [](const WindowSettings& of) { return of.parameters_file.string(); }, as_it_is);
+  set(
+      "scope", "span_s", [](const WindowSettings& of) { return of.scope.span_s; }, as_it_is);
+  if (before == nullptr || settings.scope.layout != before->scope.layout)
+    for (auto& [key, value] : to_toml(settings.scope.layout)) section(file, "scope").insert_or_assign(key, value);
+  toml::table& scope = section(file, "scope");
+  scope.insert_or_assign("layouts", combine(scope["layouts"].as_array(), settings.scope.own_layouts,
+                                            before == nullptr ? OwnLayouts() : before->scope.own_layouts));
+  set(
+      "trigger", "mode", [](const WindowSettings& of) { return of.scope.trigger.mode; },
+      [](TriggerMode mode) { return name_of(mode, trigger_mode_names); });
+  set(
+      "trigger", "signal", [](const WindowSettings& of) { return of.scope.trigger.signal; },
+      [](protocol::Signal signal) { return protocol::info(signal).name; });
+  set(
+      "trigger", "edge", [](const WindowSettings& of) { return of.scope.trigger.edge; },
+      [](TriggerEdge edge) { return name_of(edge, trigger_edge_names); });
+  set(
+      "trigger", "level", [](const WindowSettings& of) { return of.scope.trigger.level; }, as_it_is);
+  set(
+      "trigger", "pre_trigger", [](const WindowSettings& of) { return of.scope.trigger.pre_trigger; }, as_it_is);
+}
+
+}  // namespace
+
+std::filesystem::path window_settings_path() {
+  if (const char* configuration = std::getenv("XDG_CONFIG_HOME"); configuration != nullptr && *configuration == '/')
+    return std::filesystem::path(configuration) / "inkwell" / "window.toml";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+    return std::filesystem::path(home) / ".config" / "inkwell" / "window.toml";
+  return {};
+}
+
+LoadedSettings read_settings(const std::filesystem::path& file) {
+  const ReadText read = read_lines(text_of(file));
+  LoadedSettings loaded{settings_from(read.table), {}};
+  if (!read.problem.empty())
+    loaded.problem = fmt::format("The window settings {}, {}. This part is ignored. Correct it, or remove the file.",
+                                 file.string(), read.problem);
+  return loaded;
+}
+
+std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file,
+                           const WindowSettings& before) {
+  std::error_code ignored;
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  const bool is_new = !std::filesystem::exists(file, ignored);
+  if (!is_new && settings == before) return {};
+  try {
+    const std::string text = text_of(file);
+    ReadText current = read_lines(text);
+    if (!current.problem.empty()) local::replace_file(damaged_copy(file), text);
+    apply(current.table, settings, is_new ? nullptr : &before);
+    local::replace_file(file, format(current.table));
+    return {};
+  } catch (const std::system_error& error) {
+    return fmt::format("The window settings could not be written to {}: {}. Check that the disk is not full.",
+                       file.string(), error.code().message());
+  }
+}
+
+std::filesystem::path damaged_copy(const std::filesystem::path& file) {
+  std::filesystem::path copy = file;
+  return copy.replace_extension(".damaged.toml");
+}
+
+std::string format_settings(const WindowSettings& settings) {
+  toml::table file;
+  apply(file, settings, nullptr);
+  return format(file);
+}
+
+WindowSettings parse_settings(const std::string& text) { return settings_from(read_lines(text).table); }
 
 }  // namespace inkwell::window

@@ -27,10 +27,19 @@ struct WindowSettings {
 /// Returns $XDG_CONFIG_HOME/inkwell/window.toml or ~/.config/inkwell/window.toml; empty if neither directory is known.
 std::filesystem::path window_settings_path();
 
-/// Returns the defaults if the file does not exist.
-WindowSettings read_settings(const std::filesystem::path& file);
-/// Returns an error message; empty on success.
-std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file);
+struct LoadedSettings {
+  WindowSettings settings;
+  std::string problem;  ///< names the first line that is not TOML; empty: none
+};
+
+/// Returns the defaults if the file does not exist. Lines that are not TOML are ignored.
+LoadedSettings read_settings(const std::filesystem::path& file);
+/// Writes the settings that differ from `before`, which are the settings that were read. The other content of the file
+/// remains: changes of another window, and settings, layouts and signals that this version does not know. If the file
+/// has lines that are not TOML, damaged_copy() receives the old content. Returns an error message; empty on success.
+std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file,
+                           const WindowSettings& before);
+std::filesystem::path damaged_copy(const std::filesystem::path& file);
 
 std::string format_settings(const WindowSettings& settings);
 /// Uses the default for each unreadable or invalid setting, so that the window opens despite a damaged file.

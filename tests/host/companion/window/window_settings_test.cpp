@@ -1,5 +1,6 @@
 // Tests that settings can be written and read, and that a damaged file does not prevent the window from opening.
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 
 #include <doctest/doctest.h>
@@ -10,6 +11,21 @@
 using namespace inkwell;
 using namespace inkwell::window;
 using inkwell::tests::TemporaryDirectory;
+
+namespace {
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+ScopeLayout layout_called(const char* name) {
+  ScopeLayout layout = built_in_layout("paper");
+  layout.name = name;
+  return layout;
+}
+
+}  // namespace
 
 TEST_CASE("settings come back as they were written") {
   WindowSettings settings;
@@ -64,12 +80,87 @@ TEST_CASE("settings are written to a file in a new folder, and a write error is 
   const std::filesystem::path file = directory.file("inkwell/window.toml");
   WindowSettings settings;
   settings.theme = Theme::light;
-  CHECK(write_settings(settings, file).empty());
-  CHECK(read_settings(file) == settings);
+  CHECK(write_settings(settings, file, {}).empty());
+  CHECK(read_settings(file).settings == settings);
   const std::filesystem::directory_iterator left(file.parent_path());
   CHECK(std::distance(left, {}) == 1);  // no temporary file remains
-  CHECK(read_settings(directory.file("none.toml")) == WindowSettings{});
-  CHECK(write_settings(settings, "/proc/none/window.toml").find("/proc/none/window.toml") != std::string::npos);
+  CHECK(read_settings(directory.file("none.toml")).settings == WindowSettings{});
+  CHECK(write_settings(settings, "/proc/none/window.toml", {}).find("/proc/none/window.toml") != std::string::npos);
+}
+
+TEST_CASE("a line that is not TOML costs no other setting, and is reported and copied") {
+  const TemporaryDirectory directory;
+  const std::filesystem::path file = directory / "window.toml";
+  const std::string text = "[window]\ntheme = \"light\"\noops = = 1\nscope_part = 0.5\n";
+  std::ofstream(file) << text;
+  const LoadedSettings loaded = read_settings(file);
+  CHECK(loaded.settings.theme == Theme::light);
+  CHECK(loaded.settings.scope_part == 0.5f);
+  CHECK(loaded.problem.find("line 3") != std::string::npos);
+  CHECK(loaded.problem.find(file.string()) != std::string::npos);
+
+  CHECK(write_settings(loaded.settings, file, loaded.settings).empty());
+  CHECK(text_of(file) == text);  // unchanged settings are not written
+  WindowSettings changed = loaded.settings;
+  changed.column_width = 400.0f;
+  CHECK(write_settings(changed, file, loaded.settings).empty());
+  CHECK(read_settings(file).settings == changed);
+  CHECK(read_settings(file).problem.empty());
+  CHECK(text_of(damaged_copy(file)) == text);
+}
+
+TEST_CASE("settings of a file that never becomes valid TOML are the defaults") {
+  for (const char* text : {"plots = [", "\"\"\"", "a = 1\na = 2\n[a]\n[a", "\xFF\xFE"}) {
+    CAPTURE(text);
+    CHECK(parse_settings(text) == WindowSettings{});
+  }
+}
+
+TEST_CASE("unknown settings, signals and layouts remain in the file") {
+  const TemporaryDirectory directory;
+  const std::filesystem::path file = directory / "window.toml";
+  std::ofstream(file) << "[window]\nnew_in_3 = 7\ntheme = \"pink\"\n[future]\nx = 1\n"
+                         "[scope]\nname = \"law\"\nplots = [ { kind = \"time\", signals = [ \"depth_of_law_m\" ] } ]\n"
+                         "layouts = [ { name = \"other law\", plots = [ { signals = [ \"angle_of_law_rad\" ] } ] } ]\n";
+  const WindowSettings before = read_settings(file).settings;
+  WindowSettings changed = before;
+  changed.scope.span_s = 0.25;
+  changed.scope.own_layouts.save(layout_called("mine"));
+  CHECK(write_settings(changed, file, before).empty());
+  const std::string text = text_of(file);
+  for (const char* kept : {"new_in_3", "pink", "[future]", "depth_of_law_m", "other law", "angle_of_law_rad", "mine"}) {
+    CAPTURE(kept);
+    CHECK(text.find(kept) != std::string::npos);
+  }
+  CHECK(read_settings(file).settings == changed);
+}
+
+TEST_CASE("two windows keep the changes of each other") {
+  const TemporaryDirectory directory;
+  const std::filesystem::path file = directory / "window.toml";
+  WindowSettings start;
+  start.scope.own_layouts.save(layout_called("first"));
+  start.scope.own_layouts.save(layout_called("second"));
+  REQUIRE(write_settings(start, file, {}).empty());
+
+  WindowSettings one = start, other = start;
+  one.theme = Theme::light;
+  one.scope.own_layouts.remove("first");
+  one.scope.own_layouts.save(layout_called("third"));
+  other.scope.span_s = 0.25;
+  ScopeLayout second = layout_called("second");
+  second.columns = 1;
+  other.scope.own_layouts.save(second);
+  REQUIRE(write_settings(one, file, start).empty());
+  REQUIRE(write_settings(other, file, start).empty());
+
+  const WindowSettings combined = read_settings(file).settings;
+  CHECK(combined.theme == Theme::light);
+  CHECK(combined.scope.span_s == 0.25);
+  CHECK(combined.scope.own_layouts.find("first") == nullptr);
+  REQUIRE(combined.scope.own_layouts.find("second") != nullptr);
+  CHECK(*combined.scope.own_layouts.find("second") == second);
+  CHECK(combined.scope.own_layouts.find("third") != nullptr);
 }
 
 TEST_CASE("the fixed range of a plot is saved, and a reversed range is ignored") {
