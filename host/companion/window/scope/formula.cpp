@@ -79,6 +79,9 @@ std::string refusal_of_name(std::string_view name) {
 struct FormulaValues::Implementation {
   explicit Implementation(const Formula& formula) : inputs(inputs_of(formula.text)), values(inputs.size()) {
     for (std::size_t i = 0; i < inputs.size(); ++i) parser.DefineVar(std::string(info(inputs[i]).name), &values[i]);
+    // muParser rounds halves up, unlike the function of C.
+    parser.DefineFun(
+        "rint", +[](double value) { return std::nearbyint(value); });
     parser.SetExpr(formula.text);
     if (formula.low_pass_Hz > 0.0)
       share = 1.0 - std::exp(-2.0 * std::numbers::pi * formula.low_pass_Hz / protocol::servo_rate_Hz);

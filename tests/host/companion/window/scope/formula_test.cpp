@@ -37,6 +37,15 @@ TEST_CASE("a formula gives sums, differences, products and functions of signals"
   CHECK(std::isnan(value_of("1 / force_N", {0.0f})));
 }
 
+TEST_CASE("rint rounds halves to even, as in C") {
+  for (const auto& [value, rounded] :
+       {std::pair{0.5f, 0.0f}, {1.5f, 2.0f}, {2.5f, 2.0f}, {-0.5f, 0.0f}, {-1.5f, -2.0f}}) {
+    CAPTURE(value);
+    CHECK(value_of("rint(force_N)", {value}) == rounded);
+  }
+  CHECK(value_of("rint(2.5) + 0 * force_N", {1.0f}) == 2.0f);
+}
+
 TEST_CASE("a low-pass filter passes slow changes and restarts after a gap") {
   Formula slow = formula("force_N");
   slow.low_pass_Hz = 100.0;
