@@ -1,11 +1,14 @@
 #include "host/client/device/address.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <thread>
 
 #include <fmt/format.h>
+
+#include "host/client/device/nearest_name.hpp"
 
 namespace inkwell::device {
 namespace {
@@ -21,6 +24,16 @@ std::string serial_numbers(const std::vector<Endpoint>& endpoints) {
   std::string numbers;
   for (const auto& endpoint : endpoints) numbers += " " + endpoint.serial_number;
   return numbers;
+}
+
+struct AddressForm {
+  std::string_view name;
+};
+constexpr AddressForm address_forms[] = {{own_board}, {usbip_scheme}, {board_scheme}, {board_options}};
+
+/// Serial numbers of boards are hexadecimal.
+bool is_serial_number(std::string_view text) {
+  return std::ranges::all_of(text, [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
 std::string no_endpoint_message(const Address& address) {
@@ -113,6 +126,11 @@ Endpoint find_arm(const Address& address) {
     std::this_thread::sleep_for(look_again);
     endpoints = find_arms(address);
   }
+  if (endpoints.empty() && !is_serial_number(address.serial_number))
+    throw BadAddress(fmt::format(
+        "`{}` is neither a serial number nor another address.{} Give the serial number of an arm, usbip:HOST:PORT, "
+        "usbip:unix:PATH or virtual.",
+        address.serial_number, suggestion(address_forms, address.serial_number)));
   if (endpoints.empty()) throw NoDevice(no_endpoint_message(address));
   if (address.kind == Address::Kind::usb && endpoints.size() > 1)
     throw SeveralArms(fmt::format("{} arms are plugged in. Choose one by its serial number:{}.", endpoints.size(),

@@ -105,6 +105,18 @@ TEST_CASE("the error for an unusable socket path states the reason") {
   CHECK(contains(nobody, "No program answers at unix:/nowhere/x"));
 }
 
+TEST_CASE("a misspelled address is not taken for a serial number") {
+  FakeUsb usb;
+  const auto message = [](const char* text) {
+    return message_of<device::BadAddress>([&] { device::find_arm(parse_address(text)); });
+  };
+  CHECK(contains(message("virtul"), "`virtul` is neither a serial number nor another address. Did you mean virtual?"));
+  CHECK(contains(message("usbp:127.0.0.1:3240"), "usbip:HOST:PORT"));
+  CHECK(contains(message("127.0.0.1:3240"), "usbip:HOST:PORT"));
+  usb.add_arm("my arm");
+  CHECK(device::find_arm(parse_address("my arm")).serial_number == "my arm");
+}
+
 TEST_CASE("find_arm returns the requested arm, or raises an error that lists the arms") {
   FakeUsb usb;
   CHECK(contains(refusal({}), "No arm was found on USB"));
