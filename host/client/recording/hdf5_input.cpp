@@ -36,21 +36,15 @@ bool is_text(hid_t type, std::size_t bytes_maximum) {
   return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Tget_size(type) <= bytes_maximum;
 }
 
-/// A writer may extend the file while it is read. The index of the chunks therefore stays in memory once it was read.
-Handle read_access() {
-  Handle list = file_access();
-  keep_metadata(list);
-  return list;
-}
-
 std::string text_before_zero(std::string_view bytes) { return std::string(bytes.substr(0, bytes.find('\0'))); }
 
 }  // namespace
 
-Hdf5Input::Hdf5Input(const std::filesystem::path& file) : name_(file.string()) {
+Hdf5Input::Hdf5Input(const std::filesystem::path& file, Index index) : name_(file.string()) {
   // A file of an earlier version can still be marked as open if its writer did not close the file. Readers in HDF5's
   // single-writer mode may open the file regardless.
-  const Handle access = read_access();
+  const Handle access = file_access();
+  if (index == Index::stays) keep_metadata(access);
   for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ})
     if (!file_) file_ = Handle(H5Fopen(name_.c_str(), mode, access.id()), H5Fclose);
   if (!file_) fail("is damaged, or is being written: HDF5 cannot open it. Try again after the recording has finished");

@@ -24,7 +24,10 @@ class Hdf5Input {
     bool is_compressed = false;
   };
 
-  explicit Hdf5Input(const std::filesystem::path& file);
+  /// The index of a long recording takes several megabytes for each column. It must stay in memory while a writer
+  /// extends the file, because the writer changes the index.
+  enum class Index { may_be_dropped, stays };
+  explicit Hdf5Input(const std::filesystem::path& file, Index index = Index::may_be_dropped);
   /// Reads the content of a file from memory. `name` is the file's name in error sentences.
   Hdf5Input(std::span<const std::byte> content, std::string name);
 

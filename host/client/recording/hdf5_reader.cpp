@@ -180,6 +180,12 @@ class Hdf5Reader final : public ColumnReader {
   std::vector<std::optional<Hdf5Input::Dataset>> columns_;  ///< opened at the first use
 };
 
+/// A recorder may still write the file.
+bool may_be_extended(const std::filesystem::path& file) {
+  const Hdf5Input input(file);
+  return input.has("/complete") && input.whole_number("/complete") != 1;
+}
+
 StoredRecording opened(const std::shared_ptr<Hdf5Reader>& reader) {
   Recording head = reader->read_head();
   return {std::move(head), reader->stretches(), reader};
@@ -189,7 +195,8 @@ StoredRecording opened(const std::shared_ptr<Hdf5Reader>& reader) {
 
 StoredRecording open_hdf5(const std::filesystem::path& file) {
   const QuietHdf5 quiet;
-  return opened(std::make_shared<Hdf5Reader>(Hdf5Input(file)));
+  const auto index = may_be_extended(file) ? Hdf5Input::Index::stays : Hdf5Input::Index::may_be_dropped;
+  return opened(std::make_shared<Hdf5Reader>(Hdf5Input(file, index)));
 }
 
 StoredRecording open_hdf5(std::span<const std::byte> content, const std::string& name) {
