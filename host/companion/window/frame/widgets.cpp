@@ -177,9 +177,12 @@ bool message_below_item(const char* name, Colour colour, std::string_view messag
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   ImGui::GetWindowDrawList()->AddRect(corner, end, packed(colour), ImGui::GetStyle().FrameRounding, 0, style.points(2));
   const ImGuiWindow& pane = *ImGui::GetCurrentWindow()->RootWindow;
-  const float margin = style.points(10);
-  return draw_message(name, {pane.Pos.x + margin, end.y + style.points(4)}, 0.0f, pane.Size.x - 2 * margin, colour,
-                      message, style);
+  const float margin = style.points(10), width = pane.Size.x - 2 * margin, gap = style.points(4);
+  const float height =
+      ImGui::CalcTextSize(message.data(), message.data() + message.size(), false, width - 2 * margin).y + 2 * margin;
+  const bool fits_below = end.y + gap + height <= ImGui::GetIO().DisplaySize.y;
+  return draw_message(name, {pane.Pos.x + margin, fits_below ? end.y + gap : corner.y - gap}, fits_below ? 0.0f : 1.0f,
+                      width, colour, message, style);
 }
 
 bool message_at_bottom(const char* name, float bottom, Colour colour, std::string_view message, const Style& style) {

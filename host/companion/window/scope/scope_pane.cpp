@@ -176,7 +176,7 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFra
   PlotView& view = *views_[index];
   ScopePlot& plot = layout_.plots[index];
   ImGui::PushID(static_cast<int>(index));
-  ImGui::SetCursorScreenPos({origin.x, origin.y - style.points(1)});
+  ImGui::SetCursorScreenPos(origin);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(4.5f)});
   ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0.0f);
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->pane));
