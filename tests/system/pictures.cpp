@@ -311,6 +311,7 @@ TEST_CASE("pictures: every pane in a small, a usual and a large window, dark and
         rig.look();
         rig.picture(picture_file(std::string("pane ") + size.screen + " " + theme + " " + what));
       };
+      rig.wait_until("the message is gone", [](const Sight& now) { return !now.has("tuning message/message"); });
       rig.enter("tuning/wall_stiffness_N_per_m", "9000");
       rig.press_key("Return");
       rig.wait_until("it is refused", [](const Sight& now) { return now.says("0 to 3000 N/m."); });

@@ -40,6 +40,8 @@ TEST_CASE("no control moves when a number is refused, when the device refuses a 
                                           "scene/view",
                                           "tabs/Tuning",
                                           "scene/Reset view"};
+  // The window has loaded a parameter file. A message of success disappears automatically.
+  rig.wait_until("the message is gone", [](const Sight& now) { return !now.has("tuning message/message"); });
   const auto before = rig.look();
   const auto check_unmoved = [&](const Sight& now) {
     for (const std::string& control : controls) {

@@ -92,7 +92,7 @@ void ReplayBar::draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& 
   draw_over(style);
   ImGui::SameLine(0, style.points(14));
 
-  const float close_width = style.points(104), time_width = style.points(126), gap = style.points(12);
+  const float close_width = style.points(104), time_width = style.points(104), gap = style.points(12);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float right = origin.x + size.x - style.points(12) - close_width - gap - time_width - gap;
   if (right - corner.x > style.points(40)) draw_track(corner, {right - corner.x, ImGui::GetFrameHeight()}, style);

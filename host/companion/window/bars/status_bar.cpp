@@ -164,7 +164,7 @@ void StatusBar::draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk)
   const Palette& palette = *style.palette;
   const Connection connection = view.status.connection;
   const std::string serial = view.status.information ? view.status.information->serial_number : std::string{};
-  const ImVec2 area{style.points(item_widths_points[device_item]), style.points(item_points)};
+  const ImVec2 area{style.points(item_widths_points[device_item] - 6), style.points(item_points)};
   ImGui::SetCursorScreenPos(corner);
   ImGui::PushStyleColor(ImGuiCol_Button, packed(palette.pane));
   if (button("##device", area)) ImGui::OpenPopup("devices");

@@ -190,6 +190,8 @@ void apply_theme(const Palette& palette, float scale) {
   style.FrameBorderSize = 1;
   style.IndentSpacing = 14;
   style.ScaleAllSizes(scale);
+  style.FrameBorderSize = std::max(1.0f, std::round(scale));  // ScaleAllSizes() excludes borders
+  style.PopupBorderSize = style.FrameBorderSize;
   style.AntiAliasedLinesUseTex = true;
 
   const auto set = [&style](ImGuiCol slot, Colour colour) { style.Colors[slot] = vector(colour); };

@@ -15,7 +15,6 @@ using protocol::Parameter;
 
 namespace {
 
-constexpr float padding_points = 8.0f;
 constexpr float mark_points = 14.0f;
 constexpr float title_gap_points = 3.0f;
 constexpr std::size_t listed_maximum = 12;
@@ -112,8 +111,8 @@ float StoreBar::height(float width, const Style& style) const {
   if (stored_title(desk_.view()).empty()) return 0.0f;
   const ImFont& font = *style.fonts.caption;
   const float caption_height = font.CalcTextSizeA(font.FontSize, 1e4f, width, caption().c_str()).y;
-  return ImGui::GetFrameHeight() + caption_height + style.fonts.strong->FontSize + ImGui::GetStyle().ItemSpacing.y +
-         style.points(title_gap_points + 2 * padding_points);
+  return ImGui::GetFrameHeight() + caption_height + style.fonts.strong->FontSize + 4 * ImGui::GetStyle().ItemSpacing.y +
+         style.points(title_gap_points + 2);
 }
 
 void StoreBar::draw_title(const std::vector<Parameter>& waiting, const Style& style) const {

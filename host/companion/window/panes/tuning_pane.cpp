@@ -100,8 +100,8 @@ class TuningPane final : public Pane {
   void draw_heading(const PaneFrame& frame);
   void draw_presets(const PaneFrame& frame);
   void draw_messages(const PaneFrame& frame, float bottom);
-  /// Shows an error of this parameter below its field.
-  void draw_field_error(Parameter parameter, const PaneFrame& frame);
+  /// Shows an error of this parameter below its field. Returns false without an error.
+  bool draw_field_error(Parameter parameter, const PaneFrame& frame);
   /// Returns the refusal of the device, unless the user has closed the message.
   std::string refusal() const;
   void draw_group(std::string_view group, const PaneFrame& frame);
@@ -132,7 +132,8 @@ class TuningPane final : public Pane {
   FileTask task_ = FileTask::load;
   FileChooser chooser_;
   std::vector<std::string> messages_;  ///< about the last file
-  bool message_is_error_ = false;
+  bool message_is_error_ = false;      ///< true: the message remains until the user closes it
+  double message_since_s_ = 0.0;
   struct FieldError {
     Parameter parameter;
     std::string sentence;
@@ -167,7 +168,8 @@ void TuningPane::send(const device::ParameterFile& loaded, ParameterEditor& edit
   messages_ = {fmt::format("Loaded {} values from {}.", loaded.changes.size(), file_.filename().string())};
   for (const std::string& name : loaded.unknown)
     messages_.push_back(fmt::format("The parameter {} is unknown in this version and was ignored.", name));
-  message_is_error_ = false;
+  message_is_error_ = !loaded.unknown.empty();
+  message_since_s_ = ImGui::GetTime();
 }
 
 void TuningPane::draw_question(const PaneFrame& frame) {
@@ -190,7 +192,11 @@ void TuningPane::draw_question(const PaneFrame& frame) {
   ImGui::SameLine();
   const bool cancels = button("Keep arm", {style.points(110), 0});
   if (agrees) send(*waiting_, frame.editor, frame.now_s);
-  if (cancels) messages_ = {"Nothing was loaded."};
+  if (cancels) {
+    messages_ = {"Nothing was loaded."};
+    message_is_error_ = false;
+    message_since_s_ = ImGui::GetTime();
+  }
   if (agrees || cancels) waiting_.reset();
 }
 
@@ -202,6 +208,7 @@ void TuningPane::save(const std::filesystem::path& file, const ParameterEditor& 
     device::save_parameters(file, editor.shown(), information ? origin_of(*information) : device::ParameterOrigin{});
     messages_ = {fmt::format("Saved all parameters to {}.", file.string())};
     message_is_error_ = false;
+    message_since_s_ = ImGui::GetTime();
   } catch (const device::Error& error) {
     messages_ = {error.what()};
     message_is_error_ = true;
@@ -215,7 +222,7 @@ void TuningPane::draw_heading(const PaneFrame& frame) {
   text(style.fonts.strong, style.palette->text, "Tuning");
   ImGui::SameLine();
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(2), style.points(7)});
-  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - style.points(208));
+  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - style.points(196));
   ImGui::BeginDisabled(!editor.known() || !editor.can_undo());
   if (quiet_button("Undo", style)) editor.undo(frame.now_s);
   ImGui::EndDisabled();
@@ -271,6 +278,8 @@ std::string TuningPane::refusal() const {
 
 void TuningPane::draw_messages(const PaneFrame& frame, float bottom) {
   const Palette& palette = *frame.style.palette;
+  constexpr double shown_s = 4.0;
+  if (!message_is_error_ && ImGui::GetTime() - message_since_s_ > shown_s) messages_.clear();
   if (!messages_.empty()) {
     const std::string all = fmt::format("{}", fmt::join(messages_, "\n"));
     if (message_at_bottom("tuning message", bottom, message_is_error_ ? palette.caution : palette.outline, all,
@@ -283,15 +292,18 @@ void TuningPane::draw_messages(const PaneFrame& frame, float bottom) {
     closed_refusal_ = desk_.view().refusal.value_or("");
 }
 
-void TuningPane::draw_field_error(Parameter parameter, const PaneFrame& frame) {
+bool TuningPane::draw_field_error(Parameter parameter, const PaneFrame& frame) {
   const Palette& palette = *frame.style.palette;
   if (typing_error_ && typing_error_->parameter == parameter) {
     if (message_below_item("tuning message", palette.caution, typing_error_->sentence, frame.style))
       typing_error_.reset();
-  } else if (const std::string refused = refusal(); last_edited_ == parameter && !frame.is_replay && !refused.empty()) {
-    if (message_below_item("tuning message", palette.caution, refused, frame.style))
-      closed_refusal_ = desk_.view().refusal.value_or("");
+    return true;
   }
+  const std::string refused = refusal();
+  if (last_edited_ != parameter || frame.is_replay || refused.empty()) return false;
+  if (message_below_item("tuning message", palette.caution, refused, frame.style))
+    closed_refusal_ = desk_.view().refusal.value_or("");
+  return true;
 }
 
 void TuningPane::draw_choice(Parameter parameter, const std::string& label, float width, const PaneFrame& frame) {
@@ -304,8 +316,7 @@ void TuningPane::draw_choice(Parameter parameter, const std::string& label, floa
     frame.editor.apply(label, {&change, 1}, frame.now_s);
   }
   note_item(protocol::info(parameter).name);
-  help_on_hover(label, help_of(protocol::info(parameter)), frame.style);
-  draw_field_error(parameter, frame);
+  if (!draw_field_error(parameter, frame)) help_on_hover(label, help_of(protocol::info(parameter)), frame.style);
 }
 
 void TuningPane::draw_number(Parameter parameter, const std::string& label, float width, const PaneFrame& frame) {
@@ -324,8 +335,7 @@ void TuningPane::draw_number(Parameter parameter, const std::string& label, floa
   }
   if (edit.drag_ends) editor.end_step();
   if (edit.typed) take_typed(parameter, label, *edit.typed, frame);
-  help_on_hover(label, help_of(info), frame.style);
-  draw_field_error(parameter, frame);
+  if (!draw_field_error(parameter, frame)) help_on_hover(label, help_of(info), frame.style);
 }
 
 void TuningPane::note_edit(std::optional<Parameter> parameter) {

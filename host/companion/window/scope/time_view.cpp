@@ -144,20 +144,29 @@ class TimeView final : public PlotView {
     }
     ImFont* font = frame.style.fonts.caption;
     float y = area.minimum.y - numbers_height(frame);
-    for (std::size_t i = 0; i < statistics_.size(); ++i, y += frame.style.points(statistics_line_points)) {
-      const std::string line =
-          fitted_line(statistics_[i], shown_unit(plot_.signals[i].unit()), area.width(), frame.style.fonts.caption);
-      list.AddText(font, font->FontSize, {area.minimum.x, y}, packed(line_colour(frame.style, i)), line.c_str());
-      note_text(line);
+    const std::vector<std::string> lines = fitted_lines(area.width(), font);
+    for (std::size_t i = 0; i < lines.size(); ++i, y += frame.style.points(statistics_line_points)) {
+      list.AddText(font, font->FontSize, {area.minimum.x, y}, packed(line_colour(frame.style, i)), lines[i].c_str());
+      note_text(lines[i]);
     }
   }
 
-  // Returns the longest text that is not wider than `width`.
-  static std::string fitted_line(const Statistics& each, const ShownUnit& unit, float width, ImFont* font) {
-    const std::vector<std::string> lines = statistics_lines(each, unit);
-    for (const std::string& line : lines)
-      if (font->CalcTextSizeA(font->FontSize, 1e4f, 0, line.c_str()).x <= width) return line;
-    return fitted(lines.back(), width, font);
+  // Returns a line per signal. All lines have the same form, the longest form that is not wider than `width`.
+  std::vector<std::string> fitted_lines(float width, ImFont* font) const {
+    std::vector<std::vector<std::string>> forms;
+    for (std::size_t i = 0; i < statistics_.size(); ++i)
+      forms.push_back(statistics_lines(statistics_[i], shown_unit(plot_.signals[i].unit())));
+    std::vector<std::string> lines;
+    for (std::size_t form = 0; !forms.empty() && form < forms.front().size(); ++form) {
+      lines.clear();
+      bool fit = true;
+      for (const auto& each : forms) {
+        fit &= font->CalcTextSizeA(font->FontSize, 1e4f, 0, each[form].c_str()).x <= width;
+        lines.push_back(fitted(each[form], width, font));
+      }
+      if (fit) break;
+    }
+    return lines;
   }
 
   SteadyRange y_;
