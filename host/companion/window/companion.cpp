@@ -226,8 +226,10 @@ void Companion::draw_scene(const WindowLayout& layout, float banner_height, doub
   scene_ = layout.scene;
   const std::optional<NextStep> next_step =
       returned_.waits_for_user() ? std::nullopt : next_step_of(desk_.view(), situation());
+  // Without a visible motion, the scene remains exactly the same, so that a partly redrawn picture is consistent.
+  const std::optional<device::Pose>& shown = differs_visibly(drawn_pose_, pose_) ? pose_ : drawn_pose_;
   const bool is_taken = scene_pane_.draw(scene_.origin, scene_.size,
-                                         {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr,
+                                         {style_, shown, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr,
                                           now_s, replays, next_step, banner_height});
   if (is_taken) take_next_step(next_step->action, outcome);
   if (replays) {

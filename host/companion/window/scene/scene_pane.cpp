@@ -349,7 +349,7 @@ glm::vec2 ScenePane::card_corner(glm::vec2 card, const ScenePaneInput& input) {
   const glm::vec2 mouse = to_glm(ImGui::GetIO().MousePos);
   const bool is_used = ImGui::IsAnyMouseDown() || (mouse.x >= card_.left && mouse.x <= card_.right &&
                                                    mouse.y >= card_.top && mouse.y <= card_.bottom);
-  if (!is_used && !is_free(corners[card_position_])) {
+  if (!is_used) {
     const auto better = std::ranges::find_if(corners, is_free);
     if (better != corners.end()) card_position_ = static_cast<std::size_t>(better - corners.begin());
   }
