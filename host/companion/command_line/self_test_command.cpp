@@ -73,7 +73,8 @@ void print(const SelfTestReport& report) {
         protocol::awaits_motor(entry.result))
       fmt::print("\n{}: {}\n", info(entry.result).name, info(entry.result).meaning);
   });
-  if (protocol::awaits_motors(report)) fmt::print("\n{}\n", info(protocol::Limit::motors).meaning);
+  if (protocol::awaits_motors(report))
+    fmt::print("\nThe motors receive no current for the force until all motors are present and confirmed.\n");
 }
 
 int test(const DeviceOptions& options, bool only_last) {
