@@ -20,6 +20,9 @@ constexpr std::uint32_t orders = 4;
 
 constexpr control::Triple smallest_resistances{PulseJudgement::smallest_ohm, PulseJudgement::smallest_ohm,
                                                PulseJudgement::smallest_ohm};
+constexpr std::array<std::uint32_t, 3> shortest_levels{control::SelfTestPulses::level_periods,
+                                                       control::SelfTestPulses::level_periods,
+                                                       control::SelfTestPulses::level_periods};
 
 }  // namespace
 
@@ -69,7 +72,8 @@ void SelfTest::begin(const Readings& readings, const control::Settings& settings
   following_readings_ = rounds_ = failures_ = 0;
   sizes_pulses_ = !settings.motor_model.is_confirmed;
   pulse_size_ = control::PulseSize::of(settings.motor_model.resistance_ohm);
-  if (sizes_pulses_) pulse_size_ = control::PulseSize::of(smallest_resistances);
+  // Short pulses suffice for the estimate.
+  if (sizes_pulses_) pulse_size_ = {smallest_resistances, shortest_levels};
   phase_ = Phase::wires;
 }
 

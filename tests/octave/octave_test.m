@@ -176,10 +176,11 @@ function samples = run_with_seed(seed)
     inkwell_force(arm, [0 0 0]);
     pose = inkwell_pose(arm);
   end
-  assert(pose.time_s - begin_s, 0.02, 1e-9);
+  servo_period_s = 50e-6;  % a pose may be one period older than its bus frame
+  assert(pose.time_s - begin_s, 0.02, 1.1 * servo_period_s);
   inkwell_sleep(arm, 0.25);
   pose = inkwell_pose(arm);
-  assert(pose.time_s - begin_s, 0.27, 1e-9);
+  assert(pose.time_s - begin_s, 0.27, 1.1 * servo_period_s);
   samples = inkwell_capture(arm, {'supply_V', 'position_z_m'}, 0.05);
   inkwell_close(arm);
 end
