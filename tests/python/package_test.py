@@ -561,7 +561,8 @@ class Programs(unittest.TestCase):
         self.assertEqual((said.returncode, said.stdout, said.stderr), (0, "end\n", ""))
 
     def test_addresses_that_lead_nowhere(self):
-        for address, error, words in (("no such number", inkwell.NoDevice, "no such number"),
+        for address, error, words in (("0123456789AB", inkwell.NoDevice, "0123456789AB"),
+                                      ("no such number", inkwell.BadArgument, "no such number"),
                                       ("usbip:nowhere", inkwell.BadArgument, "127.0.0.1:3240"),
                                       ("usbip:127.0.0.1:1", inkwell.Failed, "127.0.0.1"),
                                       ("virtual:/no/such/arm.toml", inkwell.Failed, "/no/such/arm.toml")):

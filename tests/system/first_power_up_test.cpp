@@ -123,7 +123,7 @@ TEST_CASE("motors of 1, 6 and 20 ohm are measured by the self-test, and drive th
     const auto test = run_program("inkwell", {"self-test", "--usbip", port});
     INFO(test.out, test.err);
     CHECK(test.exit_code == 0);
-    rig.control.pause();
+    rig.control.stand_by();
     rig.connect();
     switch_force_on(rig);
     CHECK((rig.pose().limits & static_cast<std::uint8_t>(Limit::motors)) == 0);

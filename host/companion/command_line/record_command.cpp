@@ -279,8 +279,8 @@ void add_record_command(const CommandContext& context) {
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line sets a mark with its text");
   command->add_option("--name", record_options->name, "Name of the recording, such as a subject and a trial")
-      ->type_name("TEXT");
-  command->add_option("--note", record_options->note, "Note that is stored in the recording")->type_name("TEXT");
+      ->type_name("NAME");
+  command->add_option("--note", record_options->note, "Note that is stored in the recording")->type_name("SENTENCE");
   command->add_flag("--force", record_options->force,
                     "Switch the force on before the recording, and off after the recording");
   add_examples(*command,

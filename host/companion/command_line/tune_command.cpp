@@ -31,7 +31,7 @@ void add_loop_options(CLI::App& guide, guides::CurrentLoopOptions& loop) {
             }
             loop.pulses = file;
           },
-          "New recording of all pulses (.h5 or .csv), one after the other, with a mark for each pulse")
+          "New recording of all pulses (.h5 or .csv), with a mark for each pulse")
       ->type_name("FILE");
 }
 
