@@ -70,7 +70,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   Found found{Result::passed, worse_ohm};
   if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
     found.result = judge_resistance(forward_ohm, backward_ohm, is_confirmed);
-  if (protocol::is_failure(found.result)) found.result = failed_or_moved(motor, expected, found.result);
+  if (found.result != Result::passed) found.result = failed_or_moved(motor, expected, found.result);
   if (found.result != Result::passed) return {found, {}, 0.0f, estimate_ohm};
   // Voltage loss extrapolated to zero current. The mean over both current signs cancels the effect of a back EMF.
   const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);

@@ -54,7 +54,10 @@ void SelfTest::follow(const control::Controller& controller, const control::Sett
   } else if (phase_ == Phase::rest) {
     wait_for_rest(signals, settings.motor_model);
   } else if (phase_ == Phase::pulses && round_is_over_.load()) {
-    end_round(judge(controller.pulse_round(), settings), signals);
+    // Motors that are not confirmed are judged only if the arm is still at rest after the pulses.
+    const control::MotorModel& model = settings.motor_model;
+    const bool is_judged = model.is_confirmed || rests(signals, model);
+    end_round(is_judged ? judge(controller.pulse_round(), settings) : PulseJudgement::moved(), signals);
   }
 }
 
@@ -103,17 +106,22 @@ void SelfTest::begin_round() {
   waits_since_ = samples_.recorded();
 }
 
+bool SelfTest::rests(const protocol::SignalValues& signals, const control::MotorModel& model) const {
+  const float limit_V = sizes_pulses_ ? rest_for_estimate_V : rest_V;
+  bool rests = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float back_emf_V = signals[of_axis(protocol::Signal::joint_speed_1_rad_s, i)] * model.back_emf_Vs_per_rad[i];
+    rests = rests && back_emf_V < limit_V && back_emf_V > -limit_V;
+  }
+  return rests;
+}
+
 void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model) {
   if (entry(Item::current_offsets).result == Result::not_done) {
     if (samples_.recorded() - test_since_ < off_periods + offset_readings) return;
     note_offsets();
   }
-  bool rests = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const float back_emf_V = signals[of_axis(protocol::Signal::joint_speed_1_rad_s, i)] * model.back_emf_Vs_per_rad[i];
-    rests = rests && back_emf_V < rest_V && back_emf_V > -rest_V;
-  }
-  if (rests) {
+  if (rests(signals, model)) {
     phase_ = Phase::pulses;
     send_order(Order::pulses);
   } else if (samples_.recorded() - waits_since_ > rest_patience_periods) {
@@ -132,9 +140,11 @@ void SelfTest::end_round(const PulseJudgement& judgement, const protocol::Signal
   }
   note_pulses(judgement);
   store_measurements(judgement, signals);
-  const bool has_failed = judgement.any(Result::failed) || judgement.any(Result::wrong_sign);
-  if (has_failed) ++failures_;
-  const bool is_conclusive = !has_failed && !judgement.any(Result::moved);
+  bool is_unexpected = false;
+  for (const Result result : {Result::failed, Result::wrong_sign, Result::missing, Result::unknown_motor})
+    is_unexpected |= judgement.any(result);
+  if (is_unexpected) ++failures_;
+  const bool is_conclusive = !is_unexpected && !judgement.any(Result::moved);
   if (is_conclusive || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
     finish_test();
   else

@@ -22,7 +22,7 @@ class SelfTest {
   /// Number of consecutive checks in which an undriven wire must follow its pull resistor. With fewer checks, a moving
   /// encoder could match the pull resistor by chance.
   static constexpr std::uint32_t wire_readings = 8;
-  /// An item has failed after this number of failures with the arm at rest.
+  /// An item has failed, and a motor is missing or unknown, after this number of such rounds with the arm at rest.
   static constexpr std::uint32_t failures_to_believe = 2;
   /// Part of the estimated resistance for the following pulses. The estimate may be too large by a fifth.
   static constexpr float estimated_part = 0.8f;
@@ -31,6 +31,8 @@ class SelfTest {
   static constexpr std::uint32_t rest_patience_periods = control::periods_in(0.02f);
   /// Largest back EMF at the start of a round. At a higher speed the bridges would brake the arm perceptibly.
   static constexpr float rest_V = 0.3f;
+  /// The same for the first, small pulses of motors that are not confirmed.
+  static constexpr float rest_for_estimate_V = 0.05f;
   /// Invalid range at each end of a potentiometer track, relative to the track length. A healthy wiper never enters
   /// this range.
   static constexpr float gimbal_rail_part = 0.01f;
@@ -79,6 +81,7 @@ class SelfTest {
   void begin(const Readings& readings, const control::Settings& settings, const control::Triple& offset_A);
   void note_offsets();
   void break_off();
+  bool rests(const protocol::SignalValues& signals, const control::MotorModel& model) const;
   void wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model);
   void begin_round();
   void end_round(const PulseJudgement& judgement, const protocol::SignalValues& signals);

@@ -41,14 +41,18 @@ SelfTestReport report_after_reset(BoardRig& rig) {
   return rig.device->read_self_test();
 }
 
-/// Writes the description of an Omni with motors of this resistance. Its firmware still expects 2.18 ohm.
+/// Writes the description of an Omni with motors of this resistance. Its firmware still expects 2.18 ohm. Resistance
+/// and inductance of windings with equal copper mass are proportional.
 std::string write_arm(const TemporaryDirectory& directory, double resistance_ohm) {
   const std::string path = directory.file("arm.toml");
   std::ifstream omni(INKWELL_SOURCE_DIRECTORY "/boards/arms/omni.toml");
   std::ofstream arm(path);
   for (std::string line; std::getline(omni, line);) {
     const bool is_resistance = line.starts_with("motor_resistance_");
-    arm << (is_resistance ? fmt::format("{} = {}", line.substr(0, line.find(" =")), resistance_ohm) : line) << '\n';
+    const bool is_inductance = line.starts_with("inductance_H");
+    const double value = is_inductance ? 0.000238 * resistance_ohm / 2.18 : resistance_ohm;
+    const bool is_changed = is_resistance || is_inductance;
+    arm << (is_changed ? fmt::format("{} = {}", line.substr(0, line.find(" =")), value) : line) << '\n';
   }
   return path;
 }
