@@ -35,6 +35,17 @@ constexpr int pairs_of_pulses = 3;    // at the higher voltage; a forward and a 
 constexpr float step_pulse_s = 0.02f, step_A = 0.5f;
 constexpr double ripple_A = static_cast<double>(board::current_ripple_A(arm_defaults::motor::inductance_H)) / 2;
 
+/// Fits the circuit of a motor. The current ripple depends on the fitted inductance, so the fit is repeated.
+MotorCircuit identify_circuit(const std::vector<VoltagePulse>& pulses) {
+  constexpr int repetitions = 4;
+  MotorCircuit circuit = identify(pulses, period_s, ripple_A);
+  for (int i = 0; i < repetitions; ++i) {
+    const double fitted_ripple_A = board::current_ripple_A(static_cast<float>(circuit.inductance_H)) / 2.0;
+    circuit = identify(pulses, period_s, fitted_ripple_A);
+  }
+  return circuit;
+}
+
 /// Rounds to four digits, the precision of the fit.
 double to_four_digits(double value) {
   const double step = std::pow(10.0, std::floor(std::log10(value)) - 3);
@@ -114,7 +125,7 @@ class IdentifyMotor final : public Step {
       start_pulse(pulses_.size() % 2 == 0 ? amplitude_V : -amplitude_V, now, port);
       return false;
     }
-    const MotorCircuit circuit = identify(pulses_, period_s, ripple_A);
+    const MotorCircuit circuit = identify_circuit(pulses_);
     tuning_->motors.push_back(circuit);
     report(circuit);
     return true;
