@@ -346,6 +346,20 @@ class TryGains final : public Step {
                                            {"steady_error_A", step.steady_error_A}});
   }
 
+  /// Lowers the bandwidth if the gains would be out of their ranges.
+  void lower_bandwidth(const MotorCircuit& motor) {
+    constexpr double part = 0.99;  // margin for the rounded gains
+    const SuggestedGains per_Hz = suggest_gains(motor, 1.0);
+    const auto maximum = [](Parameter parameter) { return static_cast<double>(protocol::info(parameter).maximum); };
+    const double largest_Hz =
+        part * std::min(maximum(Parameter::current_proportional_gain_V_per_A) / per_Hz.proportional_V_per_A,
+                        maximum(Parameter::current_integral_gain_V_per_As) / per_Hz.integral_V_per_As);
+    if (tuning_->options.bandwidth_Hz <= largest_Hz) return;
+    tuning_->options.bandwidth_Hz = std::floor(largest_Hz);
+    findings_->sentences.push_back(fmt::format(
+        "The ranges of the gains limit the bandwidth of this motor to {:.0f} Hz.", tuning_->options.bandwidth_Hz));
+  }
+
   /// The motors share their gains, so the gains are computed for the mean motor.
   void suggest() {
     MotorCircuit mean;
@@ -355,6 +369,7 @@ class TryGains final : public Step {
       mean.inductance_H += motor.inductance_H / count;
       mean.delay_s += motor.delay_s / count;
     }
+    lower_bandwidth(mean);
     const auto exact = suggest_gains(mean, tuning_->options.bandwidth_Hz);
     tuning_->gains = {to_four_digits(exact.proportional_V_per_A), to_four_digits(exact.integral_V_per_As)};
     // The bridge applies a voltage for one period, so the mean delay is half a period.
