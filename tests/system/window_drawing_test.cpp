@@ -73,7 +73,7 @@ TEST_CASE("a window that was drawn in parts looks like a complete drawing") {
   rig.move_to({700, 60});
   rig.wait_until("the message about the loaded file is gone",
                  [](const Sight& now) { return !now.has("tuning message/message"); });
-  rig.control.run(0.05);  // stationary afterwards
+  rig.control.run(1.0);  // stationary afterwards
   const auto newest = [&rig] { return rig.look().all.at("pose_at_periods").get<std::int64_t>(); };
   for (std::int64_t before = -1, now = newest(); now != before; now = newest()) before = now;  // poses in transit
   const Image in_parts = rig.picture();
