@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ namespace {
 
 double drawn_part(const Sight& sight) { return sight.all.at("drawn_part"); }
 
+/// The window does not draw pose changes that nobody can see (differs_visibly). Such a change may move the edges of the
+/// stylus by a part of a pixel.
+bool looks_equal(std::uint8_t one, std::uint8_t other) {
+  constexpr int least_visible = 40;
+  return std::abs(one - other) < least_visible;
+}
+
 /// Returns the rectangle of the pixels that differ, or an empty text. Leaves out the status bar, whose pose rate falls
 /// while the board is paused.
 std::string difference_below_the_status_bar(const Image& one, const Image& other) {
@@ -26,7 +34,7 @@ std::string difference_below_the_status_bar(const Image& one, const Image& other
   for (std::size_t y = status_pixels; y < one.height; ++y) {
     for (std::size_t x = 0; x < one.width; ++x) {
       const std::size_t i = 3 * (y * one.width + x);
-      if (std::equal(&one.rgb[i], &one.rgb[i] + 3, &other.rgb[i])) continue;
+      if (std::equal(&one.rgb[i], &one.rgb[i] + 3, &other.rgb[i], looks_equal)) continue;
       left = std::min(left, x), right = std::max(right, x);
       top = std::min(top, y), bottom = std::max(bottom, y);
     }
@@ -73,7 +81,7 @@ TEST_CASE("a window that was drawn in parts looks like a complete drawing") {
   rig.move_to({700, 60});
   rig.wait_until("the message about the loaded file is gone",
                  [](const Sight& now) { return !now.has("tuning message/message"); });
-  rig.control.run(1.0);  // stationary afterwards
+  rig.control.run(0.05);  // stationary afterwards
   const auto newest = [&rig] { return rig.look().all.at("pose_at_periods").get<std::int64_t>(); };
   for (std::int64_t before = -1, now = newest(); now != before; now = newest()) before = now;  // poses in transit
   const Image in_parts = rig.picture();
