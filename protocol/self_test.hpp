@@ -165,7 +165,7 @@ constexpr bool is_failure(SelfTestResult result) {
   return result == SelfTestResult::failed || result == SelfTestResult::wrong_sign;
 }
 
-/// Remedy of a failed item. A wrong sign has a remedy of its own.
+/// Remedy of a failed item. A wrong sign has its own remedy.
 constexpr std::string_view remedy_of(const SelfTestItemInfo& item, SelfTestResult result) {
   return result == SelfTestResult::wrong_sign ? info(result).meaning : item.remedy;
 }

@@ -173,7 +173,10 @@ void SelfTest::finish_test() {
   ++tests_ended_;
   phase_ = Phase::verdict;
   const protocol::SelfTestReport found = report();
-  measured_.awaits_motors = protocol::awaits_motors(found);
+  // A test of a moving arm must not release motors that an earlier test found to be missing or unknown.
+  bool has_moved = false;
+  for (std::size_t i = 0; i < 3; ++i) has_moved |= entry(of_axis(Item::motor_1, i)).result == Result::moved;
+  measured_.awaits_motors = protocol::awaits_motors(found) || (has_moved && measured_.awaits_motors);
   send_order(protocol::takes_force(found) ? Order::fail : Order::pass);
 }
 

@@ -118,6 +118,15 @@ void BoardRig::make_active() {
   run_until([](const auto& pose) { return protocol::force_is_on(pose.state); });
 }
 
+protocol::SelfTestReport self_test_after_reset(BoardRig& rig) {
+  rig.device.reset();
+  rig.control.reset();
+  rig.control.run(0.05);
+  rig.connect();
+  rig.run(0.3);
+  return rig.device->read_self_test();
+}
+
 double largest_current_A(device::ControlClient& control) {
   const auto truth = control.truth();
   double largest = 0;

@@ -60,6 +60,9 @@ class BoardRig {
   std::vector<device::Pose> poses_;
 };
 
+/// Resets the board while its injected faults remain active. Returns the results of the self-test at start-up.
+protocol::SelfTestReport self_test_after_reset(BoardRig& rig);
+
 /// Returns the largest true current of the three motors.
 double largest_current_A(device::ControlClient& control);
 

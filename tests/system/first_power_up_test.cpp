@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "boards/arms/description.hpp"
+#include "host/lab/campaign/handling.hpp"
 #include "tests/stepped_board.hpp"
 #include "tests/temporary_directory.hpp"
 
@@ -31,16 +32,6 @@ const protocol::SelfTestEntry& of(const SelfTestReport& report, SelfTestItem ite
   return report.entries[static_cast<std::size_t>(item)];
 }
 
-/// Resets the board while its injected faults remain active.
-SelfTestReport report_after_reset(BoardRig& rig) {
-  rig.device.reset();
-  rig.control.reset();
-  rig.control.run(0.05);
-  rig.connect();
-  rig.run(0.3);
-  return rig.device->read_self_test();
-}
-
 /// Writes the description of an Omni with motors of this resistance. Its firmware still expects 2.18 ohm. Resistance
 /// and inductance of windings with equal copper mass are proportional.
 std::string write_arm(const TemporaryDirectory& directory, double resistance_ohm) {
@@ -57,11 +48,6 @@ std::string write_arm(const TemporaryDirectory& directory, double resistance_ohm
   return path;
 }
 
-bool bridges_drive(device::ControlClient& control) {
-  const auto truth = control.truth();
-  return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>() < 0.001;
-}
-
 void switch_force_on(BoardRig& rig) {
   rig.take_to(free_point_m);
   rig.command(Command::enable_force);
@@ -73,14 +59,14 @@ void switch_force_on(BoardRig& rig) {
 TEST_CASE("a board without motors starts, and its bridges, its fault wire and its heartbeat can be tested") {
   BoardRig rig;
   for (const char* motor : {"1", "2", "3"}) rig.control.inject({.fault = "motor_open", .of = motor});
-  const SelfTestReport report = report_after_reset(rig);
+  const SelfTestReport report = self_test_after_reset(rig);
   for (const SelfTestItem item : {SelfTestItem::motor_1, SelfTestItem::motor_2, SelfTestItem::motor_3})
     CHECK(of(report, item).result == SelfTestResult::missing);
   CHECK(rig.pose().fault == Fault::none);
   switch_force_on(rig);
   CHECK(rig.pose().state == State::limited);
   CHECK(rig.pose().limits == static_cast<std::uint8_t>(Limit::motors));
-  CHECK(bridges_drive(rig.control));
+  CHECK(campaign::bridges_drive(rig.control.truth()));
   rig.control.inject({.fault = "bridge_fault", .for_s = 0.01});
   rig.run(0.05);
   CHECK(rig.pose().fault == Fault::bridge_fault);
@@ -92,7 +78,7 @@ TEST_CASE("a board without motors starts, and its bridges, its fault wire and it
 TEST_CASE("one connected motor passes the self-test and receives no current for the force") {
   BoardRig rig;
   for (const char* motor : {"1", "3"}) rig.control.inject({.fault = "motor_open", .of = motor});
-  const SelfTestReport report = report_after_reset(rig);
+  const SelfTestReport report = self_test_after_reset(rig);
   CHECK(of(report, SelfTestItem::motor_1).result == SelfTestResult::missing);
   CHECK(of(report, SelfTestItem::motor_2).result == SelfTestResult::passed);
   CHECK(of(report, SelfTestItem::motor_2).figure == doctest::Approx(2.27).epsilon(0.05));

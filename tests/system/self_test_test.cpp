@@ -48,16 +48,6 @@ void check_passed(const SelfTestReport& report) {
   }
 }
 
-/// Resets the board while its injected faults remain active.
-SelfTestReport report_after_reset(BoardRig& rig) {
-  rig.device.reset();
-  rig.control.reset();
-  rig.control.run(0.05);
-  rig.connect();
-  rig.run(0.3);
-  return rig.device->read_self_test();
-}
-
 /// The board stores that its motors are installed and measured.
 void store_confirmed_motors(BoardRig& rig) {
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
@@ -179,7 +169,7 @@ TEST_CASE("the self-test after a reset detects silent faults and blocks the forc
       continue;
     INFO(the_case.fault, " ", the_case.of, " ", the_case.amount);
     rig.control.inject(injection(the_case));
-    const auto report = report_after_reset(rig);
+    const auto report = self_test_after_reset(rig);
     CHECK(fmt::format("{}", fmt::join(failed(report), " ")) == fmt::format("{}", fmt::join(the_case.items, " ")));
     CHECK(rig.pose().fault == Fault::self_test_failed);
     rig.command(protocol::Command::enable_force);
@@ -248,7 +238,7 @@ TEST_CASE("healthy boards with very small stored current limits pass the self-te
     const double side_m = i % 2 == 0 ? 0.05 : -0.05;
     rig.control.hand_path({{0.0, {-side_m, 0.0, -0.03}}, {0.3 + 0.02 * i, {side_m, side_m, -0.02}}});
     rig.run(0.2);
-    const auto report = report_after_reset(rig);
+    const auto report = self_test_after_reset(rig);
     CHECK(fmt::format("{}", fmt::join(failed(report), " ")).empty());
     CHECK(rig.pose().fault == Fault::none);
     CHECK(rig.device->parameters()[protocol::Parameter::current_limit_1_A] == 0.01f);
@@ -305,7 +295,7 @@ TEST_CASE("without a supply the self-test is aborted and reports this, and it ru
   BoardRig rig;
   rig.control.inject({"supply_cut"});
   rig.control.run(0.5);
-  const auto report = report_after_reset(rig);
+  const auto report = self_test_after_reset(rig);
   CHECK(rig.pose().fault == Fault::supply_low);
   CHECK(report.tests_ended == 0);
   CHECK(of(report, SelfTestItem::motor_1).result == SelfTestResult::broken_off);

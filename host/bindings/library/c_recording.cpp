@@ -34,7 +34,7 @@ inkwell_result inkwell_get_losses(inkwell_arm* arm, inkwell_losses* losses) {
 inkwell_result inkwell_send_test_pulse(inkwell_arm* arm, int motor, inkwell_pulse unit, double amplitude,
                                        double duration_s) {
   return guarded([&] {
-    if (motor < 1 || motor > 3) throw BadArgument(fmt::format("There is no motor {}. Give 1, 2 or 3.", motor));
+    if (motor < 1 || motor > 3) throw BadArgument(fmt::format("Motor {} does not exist. Give 1, 2 or 3.", motor));
     if (unit != INKWELL_PULSE_V && unit != INKWELL_PULSE_A)
       throw BadArgument("The unit of the pulse is not known. Give INKWELL_PULSE_V or INKWELL_PULSE_A.");
     if (!std::isfinite(amplitude)) throw BadArgument("The amplitude is not a finite number. Give volts or amperes.");

@@ -143,7 +143,7 @@ std::unique_ptr<ControlChannel> open_boot_loader(const Endpoint& endpoint) {
 
 namespace {
 
-/// Returns true if the firmware reports that the force prevents the detach. Returns false if there is no answer.
+/// Returns true if the firmware reports that the force prevents the detach. Returns false without an answer.
 bool has_refused(ControlChannel& channel) {
   try {
     const auto status = channel.read({get_status_request}, status_length);

@@ -117,6 +117,22 @@ TEST_CASE("motors of 0.5 to 30 ohm are measured with at most 0.8 A, and drive th
   }
 }
 
+TEST_CASE("a self-test of a moving arm does not release motors that an earlier self-test found to be unknown") {
+  NewBoard board;
+  for (auto& motor : board.motors.motors) motor.resistance_ohm = 6.0f;
+  board.start();
+  board.controller.carry_out(tests::command(Command::self_test));
+  board.run(1);
+  while (board.controller.state() == State::testing) {
+    ++board.samples.encoder_counts[1];
+    board.run(1);
+  }
+  CHECK(board.result(SelfTestItem::motor_2) == SelfTestResult::moved);
+  board.switch_force_on();
+  CHECK((board.controller.limits() & static_cast<std::uint8_t>(Limit::motors)) != 0);
+  CHECK(board.drive.duty == control::Triple{});
+}
+
 TEST_CASE("a resistance below 0.4 ohm or above 40 ohm is a failure, not an unknown motor") {
   for (const float resistance_ohm : {0.3f, 45.0f}) {
     CAPTURE(resistance_ohm);

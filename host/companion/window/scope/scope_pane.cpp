@@ -69,7 +69,7 @@ struct PlotExport {
   PlotTable table;                               ///< values at the time of the choice
   std::size_t plot = 0;                          ///< index of the plot
   std::optional<std::filesystem::path> picture;  ///< picture that is requested from the frame loop
-  int frames_to_wait = 0;                        ///< until the dialog is no longer on the screen
+  int frames_to_wait = 0;                        ///< until the dialog has disappeared from the screen
   std::vector<Box> plots;                        ///< areas of the plots in the last frame
   BackgroundTask writer;
   std::filesystem::path file;  ///< last file
