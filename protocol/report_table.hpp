@@ -27,11 +27,12 @@ enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
   X(pose, 2, input, PoseReport, none, sizeof(PoseReport), 0, "The newest pose. The interrupt endpoint also sends it every millisecond.") \
   X(command, 3, output, none, CommandReport, sizeof(CommandReport), sizeof(CommandReport), "A command. The report is also a sign of life.") \
   X(force, 8, output, none, ForceReport, sizeof(ForceReport), sizeof(ForceReport), "The force of a program. The report is also a sign of life.") \
+  X(local_model, 18, output, none, LocalModelReport, sizeof(LocalModelReport), sizeof(LocalModelReport), "A local model of the objects at the tip and the force of a program. The report is also a sign of life.") \
   X(information, 4, feature, InformationReport, none, sizeof(InformationReport), 0, "The identity of the device and its counters.") \
   X(parameters, 5, feature, ParametersReport, ParametersReport, sizeof(ParametersReport), parameters_report_size(0), "A read returns every parameter. A write changes parameters in one transaction.") \
   X(transaction, 6, feature, TransactionReport, none, sizeof(TransactionReport), 0, "The result of the last transaction.") \
   X(frame, 7, feature, FrameReport, none, sizeof(FrameReport), 0, "The start of the newest bus frame in board time.")   \
-  X(shapes, 9, feature, none, ShapesReport, sizeof(ShapesReport), shapes_report_size(0), "The new shapes, which replace all previous shapes.") \
+  X(shapes, 9, feature, none, ShapesReport, sizeof(ShapesReport), shapes_report_size(0), "The new shapes, which replace all previous shapes, and the materials of local models.") \
   X(force_law, 10, feature, ForceLawReport, none, force_law_report_maximum, 0, "The parameters and signals that the force law of the image adds to the tables. The report header contains the report size.") \
   X(black_box, 11, feature, BlackBoxReport, none, sizeof(BlackBoxReport), 0, "The state and the fault of the black box, and the crash record of the firmware.") \
   X(black_box_rows, 12, feature, BlackBoxRowsReport, BlackBoxRequest, sizeof(BlackBoxRowsReport), sizeof(BlackBoxRequest), "A read returns rows of the black box. A write selects the first row.") \

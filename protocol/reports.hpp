@@ -2,7 +2,7 @@
 // other structures are naturally aligned.
 //
 //   PoseReport: input report, one per bus frame (1 ms of the host's clock).
-//   CommandReport, ForceReport: output reports. Each output report restarts the host timeout.
+//   CommandReport, ForceReport, LocalModelReport: output reports. Each output report restarts the host timeout.
 //   InformationReport, TransactionReport, FrameReport, ForceLawReport: feature reports (get).
 //   ParametersReport: feature report (get and set). The board applies a ParametersReport completely or not at all.
 //   ShapesReport: feature report (set). The board applies a ShapesReport completely or not at all.
@@ -44,7 +44,7 @@ static_assert(std::endian::native == std::endian::little, "the structures are tr
 #endif
 
 /// Increase the protocol version when a report structure or the meaning of an id changes.
-inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 17 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt and the scope. Fields named `time_periods` are numbers of control periods.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -56,6 +56,7 @@ enum class ReportId : std::uint8_t {
   pose = 0x01,             ///< input
   command = 0x02,          ///< output
   force = 0x03,            ///< output
+  local_model = 0x04,      ///< output
   information = 0x10,      ///< feature, get
   parameters = 0x11,       ///< feature, get and set
   transaction = 0x12,      ///< feature, get
@@ -331,6 +332,7 @@ struct SurfaceEntry {
   float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
   float static_friction;    ///< 0..friction_maximum, relative to the normal force
   float dynamic_friction;   ///< 0..static_friction
+  float viscosity_Ns_per_m; ///< 0 to the maximum of wall_damping_Ns_per_m; tangential, at most the normal force
   /// Life of the shape after it takes effect, 0..shape_life_maximum_s. A shape with infinite life exists until the
   /// claim ends. A shape with `life_s` 0 does not exist.
   float life_s;
@@ -348,26 +350,114 @@ struct SphereEntry {
   SurfaceEntry surface;
 };
 
+enum class SolidKind : std::uint8_t { sphere = 0, capsule = 1, cylinder = 2, box = 3 };
+
+/// Solid that the probe cannot enter. The edges of cylinders and boxes are rounded with solid_rounding_m.
+struct SolidEntry {
+  SolidKind kind;
+  std::uint8_t reserved[3] = {};
+  float centre_m[3];
+  /// Quaternion w, x, y, z from the axes of the solid to the workspace, with any length except 0. The axis of a capsule
+  /// or cylinder is z.
+  float orientation[4];
+  /// Sphere: radius. Capsule: radius and half length of the axis without the caps. Cylinder: radius and half length.
+  /// Box: half lengths along x, y and z. Unused entries are ignored.
+  float size_m[3];
+  SurfaceEntry surface;
+};
+
+/// Properties of a surface in local models, with the ranges of SurfaceEntry.
+struct MaterialEntry {
+  float stiffness_N_per_m;
+  float damping_Ns_per_m;
+  float static_friction;
+  float dynamic_friction;
+  float viscosity_Ns_per_m;
+};
+
 inline constexpr std::size_t shape_planes_maximum = 8;
+inline constexpr std::size_t shape_solids_maximum = 16;
+inline constexpr std::size_t materials_maximum = 16;
+/// The tip of a stylus has no sharp features of this size, and a proxy needs a normal at each edge.
+inline constexpr float solid_rounding_m = 0.0005f;
 inline constexpr float shape_life_maximum_s = 10.0f;
 inline constexpr float shape_distance_maximum_m = 10.0f;  ///< limit of every length and coordinate
 inline constexpr float friction_maximum = 3.0f;
 
-/// Feature report, set: the new shapes. The new shapes replace all previous shapes without a jump of the force. The
-/// host sends at least shapes_report_size(plane_count) bytes. The device refuses the whole report if it is invalid or
-/// does not come from the driver. RequestResultsReport has the result. All shapes are removed when the claim ends.
+/// Feature report, set: the new shapes and the materials of the following local models. The new shapes replace all
+/// previous shapes without a jump of the force. The host sends at least shapes_report_size() bytes. The device refuses
+/// the whole report if it is invalid or does not come from the driver. RequestResultsReport has the result. All shapes
+/// are removed when the claim ends.
 struct ShapesReport {
   ReportId report_id = ReportId::shapes;
   std::uint8_t version = protocol_version;
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
-  std::uint8_t reserved = 0;
+  std::uint8_t solid_count;  ///< 0..shape_solids_maximum
   std::uint32_t claim;  ///< claim of the driver
   /// Chosen by the program. RequestResultsReport lists the result under the ticket. If the ticket is 0, the result is
   /// not recorded.
   std::uint32_t ticket;
+  std::uint8_t material_count;  ///< 0..materials_maximum; 0 keeps the previous materials
+  std::uint8_t reserved[3] = {};
   SphereEntry sphere;
   PlaneEntry planes[shape_planes_maximum];
+  SolidEntry solids[shape_solids_maximum];
+  MaterialEntry materials[materials_maximum];
 };
+
+inline constexpr std::size_t local_features_maximum = 3;
+
+enum class FeatureKind : std::uint8_t { plane = 0, cylinder = 1, sphere = 2 };
+
+#pragma pack(push, 1)
+
+/// Feature of a local model: a surface that the center of the tip cannot pass. The free space of a cylinder or a sphere
+/// is outside. Lengths are relative to the anchor.
+struct FeatureEntry {
+  FeatureKind kind : 2;
+  std::uint8_t moves : 1;     ///< 1: the feature moves with the velocity and the spin of the report
+  std::uint8_t material : 4;  ///< index of a material in the newest ShapesReport with materials
+  std::uint8_t reserved : 1;
+  /// Octahedral coordinates of a unit vector (decode_direction()). Plane, sphere: normal at the anchor. Cylinder: axis.
+  std::int16_t direction[2];
+  /// In local_length_step_m. Plane, sphere: distance from the surface to the anchor, and radius of the sphere. Cylinder:
+  /// vector from the anchor to the axis along the two vectors of across().
+  std::int16_t lengths[2];
+};
+
+/// Output report: a local model of the objects at the tip, and the force of a program. A program sends at most one
+/// report per millisecond. The model replaces the previous model. The force obeys the rules of ForceReport. The device
+/// refuses and counts a report if a value is invalid, if the claim is not the driver's, or if the pose is older than
+/// force_pose_age_maximum_ms. The protocol version is not repeated here, because the claim requires the version.
+struct LocalModelReport {
+  ReportId report_id = ReportId::local_model;
+  ForceMode mode;
+  std::uint8_t feature_count;   ///< 0..local_features_maximum
+  std::uint8_t interval_ms;     ///< 1..force_interval_maximum_ms, for the force
+  std::uint8_t life_ms;         ///< 1..local_model_life_maximum_ms; the model fades if no report arrives in this time
+  std::int8_t spin[3];          ///< angular velocity of the moving object, in local_spin_step_rad_per_s
+  std::uint32_t claim;          ///< claim of the driver
+  std::uint16_t sequence;       ///< low half of the sequence of force reports
+  std::uint16_t pose_sequence;  ///< low half of PoseReport::sequence of the newest pose that the program has received
+  std::int16_t anchor[3];       ///< in local_anchor_step_m, in the workspace
+  std::int16_t velocity[3];     ///< of the moving object at the anchor, in local_speed_step_m_per_s
+  std::int16_t force[3];        ///< force on the hand, in local_force_step_N
+  std::uint16_t cylinder_radius;  ///< of all cylinders of the report, in local_length_step_m
+  FeatureEntry features[local_features_maximum];
+  std::uint8_t reserved;
+};
+
+#pragma pack(pop)
+
+inline constexpr float local_length_step_m = 2e-6f;
+inline constexpr float local_anchor_step_m = 20e-6f;
+inline constexpr float local_speed_step_m_per_s = 2e-4f;
+inline constexpr float local_spin_step_rad_per_s = 0.25f;
+inline constexpr float local_force_step_N = 1e-3f;
+/// The board does not extrapolate a moving object for a longer time.
+inline constexpr std::uint8_t local_model_life_maximum_ms = 20;
+/// Smallest radius of the tip in a local model. At a sharp edge or corner the surface would have no normal.
+inline constexpr float local_tip_radius_minimum_m = 0.0005f;
 
 /// Feature report: table rows of the image's force law. The name and the description of the force law follow this
 /// header. Each parameter has three floats (minimum, maximum, default), a name, a unit and a help text. Each signal has
@@ -384,7 +474,11 @@ struct ForceLawReport {
 /// Largest size of a ForceLawReport. Some kernels do not accept longer reports.
 inline constexpr std::size_t force_law_report_maximum = 2048;
 
-constexpr std::size_t shapes_report_size(std::size_t plane_count) {
+/// Size of the used part of a ShapesReport.
+constexpr std::size_t shapes_report_size(std::size_t plane_count, std::size_t solid_count = 0,
+                                         std::size_t material_count = 0) {
+  if (material_count != 0) return offsetof(ShapesReport, materials) + material_count * sizeof(MaterialEntry);
+  if (solid_count != 0) return offsetof(ShapesReport, solids) + solid_count * sizeof(SolidEntry);
   return offsetof(ShapesReport, planes) + plane_count * sizeof(PlaneEntry);
 }
 constexpr std::size_t parameters_report_size(std::size_t count) {
@@ -402,7 +496,9 @@ static_assert(sizeof(ParametersReport) == 12 + 8 * parameter_entries_maximum);
 static_assert(sizeof(TransactionReport) == 20);
 static_assert(sizeof(FrameReport) == 16);
 static_assert(sizeof(ForceLawReport) == 6);
-static_assert(sizeof(SurfaceEntry) == 20 && sizeof(PlaneEntry) == 44 && sizeof(SphereEntry) == 36);
+static_assert(sizeof(SurfaceEntry) == 24 && sizeof(PlaneEntry) == 48 && sizeof(SphereEntry) == 40);
+static_assert(sizeof(SolidEntry) == 68 && sizeof(MaterialEntry) == 20 && sizeof(ShapesReport) == 1848);
+static_assert(sizeof(FeatureEntry) == 9 && sizeof(LocalModelReport) == 64);
 static_assert(std::is_trivially_copyable_v<PoseReport> && std::is_trivially_copyable_v<ParametersReport>);
 
 namespace detail {

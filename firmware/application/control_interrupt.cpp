@@ -71,6 +71,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   }
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
+  if (auto* model = host_link.program.take_local_model()) controller.follow(*model);
   if (host_link.update_requested.load()) controller.leave_for_update();
   const std::uint32_t last_round_periods = main_loop_periods.load();
   const std::uint32_t missed_periods = period - last_round_periods;

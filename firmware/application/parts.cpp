@@ -9,6 +9,7 @@ namespace inkwell::application {
 using BlackBoxMemory = link::BlackBoxMemory<protocol::black_box_rows_before, protocol::black_box_rows_from_fault>;
 
 extern link::ScopeFrames scope_frames;
+extern link::ProgramRequests program_requests;
 extern BlackBoxMemory black_box_memory;
 
 /// Returns true if a current at this limit is measurable. The current loops overshoot the limit by at most 5 %, and
@@ -34,10 +35,11 @@ INKWELL_CORE_COUPLED control::Controller controller{
     {board::supply_minimum_V, board::supply_maximum_V, board::duty_limit, board::facts.current_measurable_A(),
      board::facts.bridge_dead_time_part()},
     first_period};
-INKWELL_SRAM2 link::Link host_link{board::servo_cycles, scope_frames, black_box_memory, first_period};
+INKWELL_SRAM2 link::Link host_link{board::servo_cycles, program_requests, scope_frames, black_box_memory, first_period};
 
 INKWELL_SRAM2 Part<drivers::AnalogInputs> analog_inputs;  // DMA cannot access the core-coupled memory
 link::ScopeFrames scope_frames;
+link::ProgramRequests program_requests;
 INKWELL_KEPT_OVER_RESET BlackBoxMemory black_box_memory;
 
 bool started_by_boot_loader;

@@ -98,7 +98,7 @@ void Controller::drive(const ForceTarget& target, const Settings& settings) {
 }
 
 void Controller::replace_shapes(const Shapes& shapes) {
-  shapes_.replace(shapes);
+  touch_.shapes.replace(shapes);
   world_changed_ = true;
 }
 
@@ -155,13 +155,15 @@ void Controller::find_pose(const Settings& settings) {
 void Controller::render_force(const Settings& settings) {
   probe_.contact = find_contact(probe_.position_m, settings.box);
   program_.advance(settings.program_force);
-  const bool shapes_changed = shapes_.age();
-  const bool world_changed = std::exchange(world_changed_, false) || shapes_changed;
+  const bool shapes_changed = touch_.shapes.age();
+  const bool model_expired = touch_.age_model();
+  const bool world_changed = std::exchange(world_changed_, false) || shapes_changed || model_expired;
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
   const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
   const bool law_is_felt = force_is_on() && law_rendered;
   if (!law_is_felt) law_.reset();
   if (!force_is_on()) {
+    touch_.release(probe_.position_m);
     force_ = {};
     limits_ = 0;
     force_gain_ = 0.0f;
@@ -171,11 +173,21 @@ void Controller::render_force(const Settings& settings) {
     reserve_ = {settings.energy.reserve_J, probe_.position_m};
     return;
   }
-  force_sources_ = bit(ForceSource::walls, law_rendered) | bit(ForceSource::shapes, shapes_.any()) |
+  force_sources_ = bit(ForceSource::walls, law_rendered) | bit(ForceSource::shapes, touch_.has_objects()) |
                    bit(ForceSource::program, program_.is_driven());
-  Vector3 rendered_N = shapes_.any() ? shapes_.force_N(probe_.position_m, probe_.velocity_m_per_s) : Vector3{};
+  Vector3 rendered_N;
+  probe_.wall = {settings.wall.stiffness_N_per_m, settings.wall.damping_Ns_per_m};
+  if (touch_.has_objects()) {
+    const TouchForce& touch = touch_.step(probe_.position_m, probe_.velocity_m_per_s,
+                                          law_is_felt ? &settings.box : nullptr, settings.wall);
+    reserve_.spend(touch.raised_J);
+    rendered_N = touch.objects_N;
+    probe_.walls_N = touch.walls_N;
+  } else {
+    touch_.release(probe_.position_m);
+    probe_.walls_N = wall_force_N(probe_.contact, probe_.velocity_m_per_s, probe_.wall);
+  }
   if (law_is_felt) {
-    probe_.wall = settings.wall;
     probe_.switches = switches_.closed;
     const Vector3& law_N = law_.force_N(probe_, settings.force_law);
     // The force limit computes the squared force, so the square must also be finite. Inputs that are not finite are not

@@ -11,8 +11,8 @@
 #include "firmware/control/signal_path/felt_force_law.hpp"
 #include "firmware/control/signal_path/program_force.hpp"
 #include "firmware/control/signal_path/samples.hpp"
-#include "firmware/control/signal_path/shapes.hpp"
 #include "firmware/control/signal_path/test_pulse.hpp"
+#include "firmware/control/signal_path/touch.hpp"
 #include "firmware/control/signal_path/transition.hpp"
 #include "firmware/control/signal_path/velocity.hpp"
 #include "firmware/control/supervision/brake.hpp"
@@ -77,6 +77,8 @@ class Controller {
   [[gnu::cold]] void drive(const ForceTarget& target, const Settings& settings);
   /// Sets the shapes of a program on the PC. `shapes` must not change until the next call.
   void replace_shapes(const Shapes& shapes);
+  /// Sets the local model of a program on the PC. `model` belongs to the controller until the next call.
+  void follow(LocalModel& model) { touch_.follow(model); }
   /// Requests the state `update`. Call this function in each period until the boot loader starts.
   void leave_for_update() { pending_.events |= protocol::events(protocol::Event::update); }
   /// Reports faults found outside the signal path. The faults switch the bridges off in the next step.
@@ -200,7 +202,7 @@ class Controller {
   std::uint32_t servo_cycles_ = 0;
 
   // Large members are declared last to keep the offsets of the other members small.
-  TouchedShapes shapes_;
+  Touch touch_;
   FeltForceLaw law_;
   SelfTestPulses pulses_;
 };

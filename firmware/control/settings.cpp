@@ -63,6 +63,16 @@ Box box(const ParameterSet& set) {
           vector_of(set.of_each(Parameter::box_maximum_x_m)) - radius};
 }
 
+Surface wall(const ParameterSet& set) {
+  const float stiffness_N_per_m = set[Parameter::wall_stiffness_N_per_m];
+  return {.stiffness_N_per_m = stiffness_N_per_m,
+          .m_per_N = stiffness_N_per_m > 0.0f ? 1.0f / stiffness_N_per_m : 0.0f,
+          .damping_Ns_per_m = set[Parameter::wall_damping_Ns_per_m],
+          .static_friction = 0.0f,
+          .dynamic_friction = 0.0f,
+          .viscosity_Ns_per_m = 0.0f};
+}
+
 /// Joint torque per ampere of each motor, negative for a reversed motor. The torque per ampere is equal to the back EMF
 /// per joint speed, because 1 Nm/A = 1 Vs/rad.
 Triple joint_Nm_per_A(const ParameterSet& set) {
@@ -189,7 +199,7 @@ Settings prepare(const ParameterSet& parameters) {
           .encoders = encoders(parameters),
           .gimbal = gimbal(parameters),
           .box = box(parameters),
-          .wall = {parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]},
+          .wall = wall(parameters),
           .force_law = force_law(parameters),
           .force_limit_N = parameters[Parameter::force_limit_N],
           .recovery_N_per_period = recovery_per_s * protocol::servo_period_s * parameters[Parameter::force_limit_N],

@@ -11,6 +11,7 @@
 #include "firmware/control/signal_path/kinematics.hpp"
 #include "firmware/control/signal_path/program_force.hpp"
 #include "firmware/control/signal_path/speed_limit.hpp"
+#include "firmware/control/signal_path/surface.hpp"
 #include "firmware/control/signal_path/torque.hpp"
 #include "firmware/control/supervision/motor_check.hpp"
 #include "firmware/control/supervision/motor_heat.hpp"
@@ -42,7 +43,7 @@ struct Settings {
   EncoderScale encoders;
   std::array<GimbalCurve, 3> gimbal;
   Box box;  ///< already reduced by the sphere radius
-  Wall wall;
+  Surface wall;
   ForceLawValues force_law;
   float force_limit_N;          ///< bound of the magnitude of the total force
   float recovery_N_per_period;  ///< recovery rate after a jump of a force component (Transition)

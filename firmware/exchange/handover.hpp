@@ -36,6 +36,8 @@ class Handover {
     return true;
   }
   const T& used() const { return slots_[used_]; }
+  /// The interrupt may change the value that it uses.
+  T& used() { return slots_[used_]; }
 
  private:
   std::array<T, 2> slots_{};

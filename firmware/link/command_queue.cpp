@@ -2,6 +2,7 @@
 
 #include "firmware/control/signal_path/installed_force_law.hpp"
 #include "firmware/placement/interrupt.hpp"
+#include "protocol/report_table.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -30,7 +31,9 @@ bool is_valid(const protocol::TestPulse& test) {
 }  // namespace
 
 std::optional<protocol::CommandReport> whole_command(std::span<const std::byte> report) {
-  if (report.size() != sizeof(protocol::CommandReport)) return std::nullopt;
+  // A host may pad a report to the length of the longest report.
+  constexpr std::size_t longest = protocol::longest_report(protocol::ReportKind::output);
+  if (report.size() < sizeof(protocol::CommandReport) || report.size() > longest) return std::nullopt;
   protocol::CommandReport command;
   std::memcpy(&command, report.data(), sizeof command);
   if (command.report_id != protocol::ReportId::command || command.version != protocol::protocol_version)

@@ -2,7 +2,8 @@
 //
 // Each member has one producer and one consumer and never blocks the interrupt.
 //
-// The link needs about 13 KB, mostly for samples. Only the main loop accesses scope frames and black-box rows.
+// The link needs about 13 KB, mostly for samples. Scope frames, black-box rows and program requests are in other
+// memories.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,10 @@ namespace inkwell::link {
 struct Link {
   /// `cycles_per_period`: processor cycles of one control period. `first_period`: number of the first control period.
   template <std::size_t before, std::size_t after>
-  Link(std::uint32_t cycles_per_period, ScopeFrames& frames, BlackBoxMemory<before, after>& memory,
-       std::uint32_t first_period = 0)
-      : samples(first_period),
+  Link(std::uint32_t cycles_per_period, ProgramRequests& program_requests, ScopeFrames& frames,
+       BlackBoxMemory<before, after>& memory, std::uint32_t first_period = 0)
+      : program(program_requests),
+        samples(first_period),
         poses(samples, cycles_per_period),
         scope(samples, frames),
         black_box(samples, memory),
@@ -39,7 +41,7 @@ struct Link {
   CommandQueue commands;
   RequestResults request_results{commands};
   DriverClaim driver;
-  ProgramRequests program;
+  ProgramRequests& program;
   SampleRing samples;
   PoseRecorder poses;
   ScopeRecorder scope;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "firmware/control/signal_path/local_model.hpp"
 #include "firmware/control/signal_path/program_force.hpp"
 #include "firmware/control/signal_path/shapes.hpp"
 #include "firmware/exchange/handover.hpp"
@@ -18,12 +19,22 @@ namespace inkwell::link {
 /// std::nullopt if length, version, mode, interval or force is invalid.
 std::optional<control::ForceTarget> decode_force(std::span<const std::byte> report);
 
-/// Decodes a ShapesReport. Returns false if any part of the report is invalid. If the result is false, `shapes` is
-/// undefined. Bytes after the used part of the report are ignored.
-bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes);
+/// Materials of local models.
+using Materials = std::array<control::Surface, protocol::materials_maximum>;
 
-/// Returns the claim of a ForceReport or ShapesReport, or 0 if the report is too short.
+/// Decodes a ShapesReport. Without materials in the report, `materials` does not change. Returns false if any part of
+/// the report is invalid. If the result is false, `shapes` is undefined and `materials` does not change. Bytes after
+/// the used part of the report are ignored.
+bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes, Materials& materials);
+
+/// Decodes the force of a LocalModelReport and its features. `model` may be null. Returns std::nullopt if any part of
+/// the report is invalid; then `model` is undefined. `report` starts with its report id and may have padding bytes.
+std::optional<control::ForceTarget> decode_local_model(std::span<const std::byte> report, const Materials& materials,
+                                                       control::LocalModel* model);
+
+/// Returns the claim of a ForceReport, LocalModelReport or ShapesReport, or 0 if the report is too short.
 std::uint32_t claim_of_force(std::span<const std::byte> report);
+std::uint32_t claim_of_local_model(std::span<const std::byte> report);
 std::uint32_t claim_of_shapes(std::span<const std::byte> report);
 
 /// Returns the ticket of a ShapesReport, or 0 if the report is too short or has another version.
@@ -39,11 +50,14 @@ class ProgramRequests {
   /// number of the newest pose report.
   bool accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence);
 
+  /// Accepts a LocalModelReport under the same conditions. The counters count forces and local models together.
+  bool accept_local_model(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence);
+
   /// Accepts a ShapesReport of the driver. Returns `busy` if the interrupt has not accepted the previous report.
   /// Returns `malformed` for an invalid report.
   protocol::RequestResult accept_shapes(std::span<const std::byte> report);
 
-  /// Removes all shapes and lets the program force fade. Call this function after the claim has ended.
+  /// Removes all shapes and the local model, and lets the program force fade. Call this function after the claim has ended.
   void driver_gone();
 
   std::uint32_t forces_received() const { return forces_received_; }
@@ -55,10 +69,16 @@ class ProgramRequests {
   /// Returns the newest request since the last call, or null. The result is valid until the next call.
   const control::ForceTarget* take_force() { return forces_.swap_if_offered() ? &forces_.used() : nullptr; }
   const control::Shapes* take_shapes() { return shapes_.swap_if_offered() ? &shapes_.used() : nullptr; }
+  control::LocalModel* take_local_model() { return models_.swap_if_offered() ? &models_.used() : nullptr; }
 
  private:
+  bool count(std::optional<control::ForceTarget> target, bool is_of_driver, std::uint32_t pose_age_ms);
+  void offer(const control::ForceTarget& target, std::uint32_t sequence);
+
   Handover<control::ForceTarget> forces_;
   Handover<control::Shapes> shapes_;
+  Handover<control::LocalModel> models_;
+  Materials materials_{};
   std::uint32_t forces_received_ = 0;
   std::uint32_t forces_lost_ = 0;
   std::uint32_t forces_refused_ = 0;

@@ -106,6 +106,7 @@ std::span<const std::byte> Device::compose(ReportId id) {
     case ReportId::black_box_rows: return put(link_.black_box.rows());
     case ReportId::command:
     case ReportId::force:
+    case ReportId::local_model:
     case ReportId::shapes: break;  // not readable
   }
   return {};
@@ -137,6 +138,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
       break;
     }
     case ReportId::force: take_force(data); break;
+    case ReportId::local_model: take_local_model(data); break;
     case ReportId::shapes: take_shapes(data); break;
     case ReportId::driver:
       if (link_.driver.accept(data, link_.poses.newest_periods())) driver_gone();

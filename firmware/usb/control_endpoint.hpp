@@ -1,6 +1,7 @@
 // Endpoint 0: SETUP, data and status stages (USB 2.0, sections 8.5.3 and 9.3).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -59,7 +60,7 @@ class ControlRequests {
 class ControlEndpoint {
  public:
   /// Size of the longest report without padding.
-  static constexpr std::size_t buffer_size = sizeof(protocol::ParametersReport);
+  static constexpr std::size_t buffer_size = std::max(sizeof(protocol::ParametersReport), sizeof(protocol::ShapesReport));
   /// A host may pad a written report to the length of the longest feature report. Bytes beyond the buffer are
   /// discarded.
   static constexpr std::size_t receive_maximum = protocol::longest_report(protocol::ReportKind::feature);

@@ -274,8 +274,9 @@ void Device::send_scope() {
 }
 
 void Device::take_report(std::span<const std::byte> report) {
-  if (!report.empty() && report[0] == static_cast<std::byte>(protocol::ReportId::force)) {
-    take_force(report);
+  const auto is = [report](protocol::ReportId id) { return !report.empty() && report[0] == static_cast<std::byte>(id); };
+  if (is(protocol::ReportId::force) || is(protocol::ReportId::local_model)) {
+    is(protocol::ReportId::force) ? take_force(report) : take_local_model(report);
     port_.receive(identity::hid_out_endpoint);
     return;
   }
@@ -287,6 +288,12 @@ void Device::take_force(std::span<const std::byte> report) {
   const std::uint32_t claim = link::claim_of_force(report);
   const bool is_of_driver = check_claim(claim) && link_.driver.is_held_by(claim);
   if (link_.program.accept_force(report, is_of_driver, pose_sequence_)) link_.commands.note_sign_of_life();
+}
+
+void Device::take_local_model(std::span<const std::byte> report) {
+  const std::uint32_t claim = link::claim_of_local_model(report);
+  const bool is_of_driver = check_claim(claim) && link_.driver.is_held_by(claim);
+  if (link_.program.accept_local_model(report, is_of_driver, pose_sequence_)) link_.commands.note_sign_of_life();
 }
 
 void Device::take_shapes(std::span<const std::byte> report) {

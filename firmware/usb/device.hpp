@@ -82,6 +82,7 @@ class Device final : private ControlRequests {
   /// Handles a report on the interrupt endpoint.
   void take_report(std::span<const std::byte> report);
   void take_force(std::span<const std::byte> report);
+  void take_local_model(std::span<const std::byte> report);
   void take_shapes(std::span<const std::byte> report);
   /// Returns the command in a report. If the command is invalid, returns nothing and records the result.
   std::optional<protocol::CommandReport> read_command(std::span<const std::byte> report);

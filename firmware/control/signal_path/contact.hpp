@@ -47,7 +47,7 @@ constexpr Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m
 }
 
 /// Limits a force to `limit_N` and keeps its direction. The force is passed by value to stay in registers.
-Force bounded(Vector3 force_N, float limit_N);
+[[gnu::noinline]] Force bounded(Vector3 force_N, float limit_N);
 
 /// Scales a force by the gain of the force ramp.
 constexpr Force scaled(const Force& force, float gain) { return {gain * force.force_N, gain * force.magnitude_N}; }

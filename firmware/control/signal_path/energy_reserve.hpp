@@ -31,6 +31,9 @@ struct EnergyReserve {
   /// Adds `refill_J_per_period`.
   void update(const Vector3& felt_N, const Vector3& probe_m, const EnergyLimits& limits);
 
+  /// Subtracts energy that a moving surface stores in its spring.
+  void spend(float energy_J) { left_J = left_J > energy_J ? left_J - energy_J : 0.0f; }
+
   /// Returns the remaining energy divided by the energy below which the force is reduced.
   float part_left(const EnergyLimits& limits) const { return left_J * limits.low_reserves_per_J; }
   bool is_low(const EnergyLimits& limits) const { return part_left(limits) < 1.0f; }

@@ -32,6 +32,7 @@ struct Probe {
   std::uint8_t switches = 0;  ///< bits of protocol::Switch
   Contact contact{};          ///< contact with the box walls defined by the parameters
   Wall wall{};                ///< stiffness and damping of these walls
+  Vector3 walls_N;            ///< force of these walls
   std::uint32_t periods = 0;  ///< control periods since the law became active with a new state
 
   constexpr float time_s() const { return protocol::servo_period_s * static_cast<float>(periods); }
@@ -59,9 +60,7 @@ struct ForceSignal {
 };
 
 /// Returns the force of the box walls.
-inline Vector3 wall_force_N(const Probe& probe) {
-  return wall_force_N(probe.contact, probe.velocity_m_per_s, probe.wall);
-}
+inline const Vector3& wall_force_N(const Probe& probe) { return probe.walls_N; }
 
 }  // namespace inkwell::control
 

@@ -401,7 +401,7 @@ struct Device::Implementation {
     {
       const std::lock_guard lock(feature_mutex);
       transport()->set_feature(
-          std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count)));
+          std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count, shapes.solid_count, shapes.material_count)));
     }
     // If the result is missing, the caller sends the shapes again.
     return result_in(request_results(), shapes.ticket).value_or(protocol::RequestResult::busy);
@@ -693,6 +693,15 @@ void Device::send_force(const ForceRequest& request) {
   report.claim = implementation_->claim();
   report.sequence = implementation_->force_sequence++;
   report.pose_sequence = request.pose_sequence.value_or(implementation_->newest_sequence);
+  implementation_->write(report);
+}
+
+void Device::send_local_model(const LocalModel& model, const ForceRequest& force) {
+  protocol::LocalModelReport report = local_model_report(model, force);
+  const std::lock_guard lock(implementation_->output_mutex);
+  report.claim = implementation_->claim();
+  report.sequence = static_cast<std::uint16_t>(implementation_->force_sequence++);
+  report.pose_sequence = static_cast<std::uint16_t>(force.pose_sequence.value_or(implementation_->newest_sequence));
   implementation_->write(report);
 }
 

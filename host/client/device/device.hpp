@@ -139,6 +139,8 @@ class Device {
   /// Sets the force until the next request or until its expiry. Each request is a sign of life. Throws Error if a value
   /// is not allowed.
   void send_force(const ForceRequest& request);
+  /// Replaces the local model and sets the force, both in one report. Throws Error if a value is not allowed.
+  void send_local_model(const LocalModel& model, const ForceRequest& force);
   /// Replaces all shapes within one control period. Throws Error if a value is not allowed or the board stays busy.
   /// Throws InUse if this object does not drive the arm.
   void place_shapes(const Shapes& shapes);

@@ -22,8 +22,9 @@ std::string vector_text(const std::array<float, 3>& vector) {
 }
 
 std::string surface_text(const Surface& surface) {
-  return fmt::format("{:.6g} N/m, {:.6g} Ns/m, friction {:.6g} and {:.6g}, life {:.6g} s", surface.stiffness_N_per_m,
-                     surface.damping_Ns_per_m, surface.static_friction, surface.dynamic_friction, surface.life_s);
+  return fmt::format("{:.6g} N/m, {:.6g} Ns/m, friction {:.6g} and {:.6g}, viscosity {:.6g} Ns/m, life {:.6g} s",
+                     surface.stiffness_N_per_m, surface.damping_Ns_per_m, surface.static_friction,
+                     surface.dynamic_friction, surface.viscosity_Ns_per_m, surface.life_s);
 }
 
 }  // namespace
@@ -61,6 +62,13 @@ std::vector<Event> events_of_shapes(const Shapes& shapes, std::int64_t at_period
   if (const auto& sphere = shapes.sphere)
     add(fmt::format("Sphere: center {} m, radius {:.6g} m, {}", vector_text(sphere->centre_m), sphere->radius_m,
                     surface_text(sphere->surface)));
+  static constexpr const char* kinds[] = {"sphere", "capsule", "cylinder", "box"};
+  for (std::size_t i = 0; i < shapes.solids.size(); ++i) {
+    const Solid& solid = shapes.solids[i];
+    add(fmt::format("Solid {}: {}, center {} m, orientation {}, size {} m, {}", i + 1,
+                    kinds[static_cast<std::size_t>(solid.kind)], vector_text(solid.centre_m),
+                    fmt::join(solid.orientation, " "), vector_text(solid.size_m), surface_text(solid.surface)));
+  }
   if (events.empty()) add("All shapes were removed.");
   return events;
 }

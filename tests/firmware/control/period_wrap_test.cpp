@@ -15,8 +15,8 @@ constexpr std::uint32_t periods_before_wrap = 500;
 control::Shapes plane_over_the_wrap(const control::Vector3& probe_m) {
   control::Shapes shapes;
   shapes.planes[0] = {.normal = {0.0f, 0.0f, 1.0f}, .offset_m = probe_m.z + 0.002f};
-  shapes.surfaces[1] = {.stiffness_N_per_m = 200.0f, .m_per_N = 0.005f, .damping_Ns_per_m = 1.0f};
-  shapes.life_periods[1] = periods_before_wrap + control::periods_in(0.02f);
+  shapes.surfaces[0] = {.stiffness_N_per_m = 200.0f, .m_per_N = 0.005f, .damping_Ns_per_m = 1.0f};
+  shapes.life_periods[0] = periods_before_wrap + control::periods_in(0.02f);
   return shapes;
 }
 

@@ -79,8 +79,8 @@ struct StillArm {
   control::Shapes floor(float depth_m) const {
     control::Shapes shapes;
     shapes.planes[0] = {{0.0f, 0.0f, 1.0f}, probe_m.z + depth_m};
-    shapes.surfaces[1] = {1000.0f, 1e-3f, 0.0f, 0.0f, 0.0f};
-    shapes.life_periods[1] = 100'000;
+    shapes.surfaces[0] = {1000.0f, 1e-3f, 0.0f, 0.0f, 0.0f, 0.0f};
+    shapes.life_periods[0] = 100'000;
     return shapes;
   }
 };
@@ -163,7 +163,7 @@ TEST_CASE("a plane that appears, moves by 5 mm or disappears under a pressing ha
     arm.controller.replace_shapes(shapes[index]);
     index ^= 1u;
     CHECK(arm.largest_step_N(40) <= limit_N);
-    const float depth_m = moved.life_periods[1] == 0 ? 0.0f : moved.planes[0].offset_m - arm.probe_m.z;
+    const float depth_m = moved.life_periods[0] == 0 ? 0.0f : moved.planes[0].offset_m - arm.probe_m.z;
     CHECK(arm.force_N().z == doctest::Approx(std::max(0.0f, 1000.0f * depth_m)).epsilon(2e-3));
   }
 }
@@ -173,7 +173,7 @@ TEST_CASE("a shape whose life ends under a pressing hand releases the hand slowl
   arm.drive({}, ForceMode::instead_of_walls);
   arm.run(800);
   control::Shapes shapes = arm.floor(0.002f);
-  shapes.life_periods[1] = 1'000;
+  shapes.life_periods[0] = 1'000;
   arm.controller.replace_shapes(shapes);
   arm.drive({}, ForceMode::instead_of_walls);
   arm.run(980);
@@ -322,7 +322,7 @@ TEST_CASE("all together stay below the force limit, in their direction") {
   }
   const Vector3 force_N = arm.force_N();
   CHECK(std::sqrt(control::dot(force_N, force_N)) == doctest::Approx(arm.settings.force_limit_N).epsilon(1e-4));
-  CHECK(force_N.z / force_N.x == doctest::Approx(-4.0f / 3.0f).epsilon(1e-2));
+  CHECK(force_N.z / force_N.x == doctest::Approx(-1.0f).epsilon(1e-2));  // the floor and the wall are parallel
 }
 
 TEST_CASE("a program moves nothing while the force is off, and is ramped in with it") {
@@ -348,8 +348,8 @@ TEST_CASE("when the force is switched off, the remainder of a force jump is disc
   arm.run(2);
   arm.controller.carry_out(tests::command(protocol::Command::enable_force));
   arm.run(21);
-  // 20 of the 5000 periods of the ramp have passed. The full force is 3 N: 1 N from the wall and 2 N from the floor.
-  CHECK(arm.force_N().z == doctest::Approx(3.0f * 20 / 5000).scale(0).epsilon(2e-4));
+  // 20 of the 5000 periods of the ramp have passed. The floor is 2 mm above the probe.
+  CHECK(arm.force_N().z == doctest::Approx(2.0f * 20 / 5000).scale(0).epsilon(2e-4));
 }
 
 TEST_CASE("late reports are counted") {

@@ -59,7 +59,7 @@ TEST_CASE("a magnet pulls most at its reach, not at all where it is, and pushes 
 TEST_CASE("a force law that uses the box walls adds the wall force") {
   Stepped<magnet> law;
   law.probe.position_m = {law.parameters.x_m, law.parameters.y_m, law.parameters.z_m};
-  law.probe.contact.penetration_m = {0.001f, 0.0f, 0.0f};
+  law.probe.walls_N = {0.8f, 0.0f, 0.0f};
   CHECK(law.step().x == doctest::Approx(0.8f));
 }
 

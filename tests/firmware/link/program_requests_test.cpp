@@ -31,10 +31,11 @@ std::span<const std::byte> bytes(const Report& report) {
 }
 
 std::span<const std::byte> bytes(const ShapesReport& report) {
-  return std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count));
+  return std::as_bytes(std::span(&report, 1)).first(
+      protocol::shapes_report_size(report.plane_count, report.solid_count, report.material_count));
 }
 
-constexpr protocol::SurfaceEntry valid_surface{800.0f, 1.0f, 0.5f, 0.4f, 2.0f};
+constexpr protocol::SurfaceEntry valid_surface{800.0f, 1.0f, 0.5f, 0.4f, 3.0f, 2.0f};
 
 ShapesReport one_plane() {
   ShapesReport report{};
@@ -68,13 +69,13 @@ TEST_CASE("an invalid force report is counted as refused and is never returned b
     return report;
   };
   const ForceReport reports[] = {
-      broken([](auto& report) { report.force_N[0] = not_a_number; }),
-      broken([](auto& report) { report.force_N[1] = infinite; }),
-      broken([](auto& report) { report.force_N[2] = -infinite; }),
-      broken([](auto& report) { report.interval_ms = 0; }),
-      broken([](auto& report) { report.interval_ms = protocol::force_interval_maximum_ms + 1; }),
-      broken([](auto& report) { report.mode = static_cast<ForceMode>(3); }),
-      broken([](auto& report) { report.version = 0; }),
+      [](ShapesReport& report) { report.force_N[0] = not_a_number; },
+      [](ShapesReport& report) { report.force_N[1] = infinite; },
+      [](ShapesReport& report) { report.force_N[2] = -infinite; },
+      [](ShapesReport& report) { report.interval_ms = 0; },
+      [](ShapesReport& report) { report.interval_ms = protocol::force_interval_maximum_ms + 1; },
+      [](ShapesReport& report) { report.mode = static_cast<ForceMode>(3); },
+      [](ShapesReport& report) { report.version = 0; },
   };
   link::ProgramRequests requests;
   std::uint32_t refused = 0;
@@ -126,50 +127,69 @@ TEST_CASE("a gap in the sequence numbers counts as lost forces, and the start of
 
 TEST_CASE("a plane's normal gets the length 1, and its offset is that of its point") {
   control::Shapes shapes;
+  link::Materials materials{};
   ShapesReport report = one_plane();
   report.planes[0].point_m[0] = 5.0f;  // any point of the plane
   report.planes[0].normal[0] = 3.0f;
-  REQUIRE(link::decode_shapes(bytes(report), shapes));
+  REQUIRE(link::decode_shapes(bytes(report), shapes, materials));
   CHECK(shapes.planes[0].normal.x == doctest::Approx(0.6f));
   CHECK(shapes.planes[0].normal.z == doctest::Approx(0.8f));
   CHECK(shapes.planes[0].offset_m == doctest::Approx(0.6f * 5.0f + 0.8f * 0.02f));
-  CHECK(shapes.surfaces[1].m_per_N == doctest::Approx(1.0f / 800.0f));
-  CHECK(shapes.surfaces[1].dynamic_friction == 0.4f);
-  CHECK(shapes.life_periods[1] == 40'001);
-  CHECK(shapes.life_periods[0] == 0);
-  CHECK(shapes.life_periods[2] == 0);
+  CHECK(shapes.surfaces[0].m_per_N == doctest::Approx(1.0f / 800.0f));
+  CHECK(shapes.surfaces[0].dynamic_friction == 0.4f);
+  CHECK(shapes.surfaces[0].viscosity_Ns_per_m == 3.0f);
+  CHECK(shapes.life_periods[0] == 40'001);
+  CHECK(shapes.life_periods[1] == 0);
+  CHECK(shapes.life_periods[control::Shapes::maximum - 1] == 0);
 }
 
 TEST_CASE("a set of shapes is taken whole or refused whole") {
-  const auto broken = [](auto change) {
-    ShapesReport report = one_plane();
+  using Change = void (*)(ShapesReport&);
+  static ShapesReport report;
+  const auto prepare = [](Change change) {
+    report = one_plane();
     report.plane_count = 2;
     report.planes[1] = report.planes[0];
     report.sphere = {{0.0f, 0.0f, 0.0f}, 0.01f, valid_surface};
+    report.solid_count = 1;
+    report.solids[0] = {.kind = protocol::SolidKind::box,
+                        .orientation = {1, 0, 0, 0},
+                        .size_m = {0.01f, 0.01f, 0.01f},
+                        .surface = valid_surface};
+    report.material_count = 1;
+    report.materials[0] = {800, 1, 0.5f, 0.4f, 0};
     change(report);
-    return report;
   };
-  link::ProgramRequests requests;
-  REQUIRE(requests.accept_shapes(bytes(broken([](auto&) {}))) == RequestResult::accepted);
+  static link::ProgramRequests requests;
+  prepare([](auto&) {});
+  REQUIRE(requests.accept_shapes(bytes(report)) == RequestResult::accepted);
   REQUIRE(requests.take_shapes() != nullptr);
-  const ShapesReport reports[] = {
-      broken([](auto& report) { report.version = 1; }),
-      broken([](auto& report) { report.planes[1].normal[2] = 0.0f; }),
-      broken([](auto& report) { report.planes[1].normal[0] = not_a_number; }),
-      broken([](auto& report) { report.planes[1].point_m[1] = 11.0f; }),
-      broken([](auto& report) { report.planes[1].surface.stiffness_N_per_m = 0.0f; }),
-      broken([](auto& report) { report.planes[1].surface.stiffness_N_per_m = 3001.0f; }),
-      broken([](auto& report) { report.planes[1].surface.damping_Ns_per_m = -0.1f; }),
-      broken([](auto& report) { report.planes[1].surface.static_friction = 3.5f; }),
-      broken([](auto& report) { report.planes[1].surface.dynamic_friction = 0.6f; }),
-      broken([](auto& report) { report.planes[1].surface.life_s = 11.0f; }),
-      broken([](auto& report) { report.planes[1].surface.life_s = not_a_number; }),
-      broken([](auto& report) { report.sphere.radius_m = 0.0f; }),
-      broken([](auto& report) { report.sphere.centre_m[0] = infinite; }),
+  const Change changes[] = {
+      [](ShapesReport& report) { report.version = 1; },
+      [](ShapesReport& report) { report.planes[1].normal[2] = 0.0f; },
+      [](ShapesReport& report) { report.planes[1].normal[0] = not_a_number; },
+      [](ShapesReport& report) { report.planes[1].point_m[1] = 11.0f; },
+      [](ShapesReport& report) { report.planes[1].surface.stiffness_N_per_m = 0.0f; },
+      [](ShapesReport& report) { report.planes[1].surface.stiffness_N_per_m = 3001.0f; },
+      [](ShapesReport& report) { report.planes[1].surface.damping_Ns_per_m = -0.1f; },
+      [](ShapesReport& report) { report.planes[1].surface.static_friction = 3.5f; },
+      [](ShapesReport& report) { report.planes[1].surface.dynamic_friction = 0.6f; },
+      [](ShapesReport& report) { report.planes[1].surface.life_s = 11.0f; },
+      [](ShapesReport& report) { report.planes[1].surface.life_s = not_a_number; },
+      [](ShapesReport& report) { report.sphere.radius_m = 0.0f; },
+      [](ShapesReport& report) { report.sphere.centre_m[0] = infinite; },
+      [](ShapesReport& report) { report.planes[1].surface.viscosity_Ns_per_m = -1.0f; },
+      [](ShapesReport& report) { report.solids[0].kind = static_cast<protocol::SolidKind>(4); },
+      [](ShapesReport& report) { report.solids[0].size_m[2] = 0.0004f; },
+      [](ShapesReport& report) { report.solids[0].size_m[1] = not_a_number; },
+      [](ShapesReport& report) { report.solids[0].orientation[0] = 0.0f; },
+      [](ShapesReport& report) { report.solids[0].orientation[1] = not_a_number; },
+      [](ShapesReport& report) { report.materials[0].stiffness_N_per_m = 0.0f; },
   };
   std::size_t which = 0;
-  for (const ShapesReport& report : reports) {
+  for (const Change change : changes) {
     CAPTURE(which++);
+    prepare(change);
     CHECK(requests.accept_shapes(bytes(report)) == RequestResult::malformed);
     CHECK(requests.take_shapes() == nullptr);
   }
@@ -189,7 +209,7 @@ TEST_CASE("shapes are busy while the interrupt has not taken the previous ones, 
   CHECK(requests.accept_shapes(bytes(none)) == RequestResult::busy);
   const control::Shapes* shapes = requests.take_shapes();
   REQUIRE(shapes != nullptr);
-  CHECK(shapes->life_periods[1] != 0);
+  CHECK(shapes->life_periods[0] != 0);
   CHECK(requests.accept_shapes(bytes(none)) == RequestResult::accepted);
 }
 
@@ -208,8 +228,54 @@ TEST_CASE("a slot without a life may contain any values") {
   report.planes[0].surface = {};
   report.planes[0].normal[0] = not_a_number;
   control::Shapes shapes;
-  REQUIRE(link::decode_shapes(bytes(report), shapes));
-  CHECK(shapes.life_periods[1] == 0);
+  link::Materials materials{};
+  REQUIRE(link::decode_shapes(bytes(report), shapes, materials));
+  CHECK(shapes.life_periods[0] == 0);
+}
+
+protocol::LocalModelReport local_model(std::uint16_t sequence, std::uint16_t pose_sequence = 0) {
+  protocol::LocalModelReport report{};
+  report.interval_ms = 1;
+  report.life_ms = 20;
+  report.sequence = sequence;
+  report.pose_sequence = pose_sequence;
+  report.feature_count = 1;
+  return report;
+}
+
+TEST_CASE("local models of the driver arrive, and stale, foreign and malformed ones are refused and counted") {
+  link::ProgramRequests requests;
+  CHECK(!requests.accept_local_model(bytes(local_model(1)), true, 0));  // there is no material
+  ShapesReport materials{};
+  materials.material_count = 1;
+  materials.materials[0] = {800, 1, 0.5f, 0.4f, 0};
+  REQUIRE(requests.accept_shapes(bytes(materials)) == RequestResult::accepted);
+  CHECK(requests.accept_local_model(bytes(local_model(2)), true, 0));
+  control::LocalModel* model = requests.take_local_model();
+  REQUIRE(model != nullptr);
+  CHECK(model->count == 1);
+  CHECK(model->features[0].surface.stiffness_N_per_m == 800);
+  CHECK(requests.take_local_model() == nullptr);
+  CHECK(!requests.accept_local_model(bytes(local_model(3)), false, 0));
+  // The pose sequence wraps at 65536.
+  CHECK(requests.accept_local_model(bytes(local_model(4, 0xFFFF)), true, 0x10000 + 99));
+  CHECK(!requests.accept_local_model(bytes(local_model(5, 0xFFFF)), true, 0x10000 + 100));
+  CHECK(!requests.accept_local_model(bytes(local_model(6)).first(63), true, 0));
+  CHECK(requests.forces_received() == 6);
+  CHECK(requests.forces_refused() == 4);
+}
+
+TEST_CASE("forces and local models count lost reports together") {
+  link::ProgramRequests requests;
+  auto without_features = local_model(0xFFFF);
+  without_features.feature_count = 0;
+  requests.accept_force(bytes(force(0x1FFFE)), true, 0);
+  requests.accept_local_model(bytes(without_features), true, 0);
+  CHECK(requests.forces_lost() == 1);  // the interrupt has not accepted the force
+  requests.take_force();
+  without_features.sequence = 2;
+  requests.accept_local_model(bytes(without_features), true, 0);
+  CHECK(requests.forces_lost() == 3);
 }
 
 TEST_CASE("shapes and force end with the driver") {
@@ -243,10 +309,11 @@ TEST_CASE("a shape with an infinite life lasts") {
   ShapesReport report = one_plane();
   report.planes[0].surface.life_s = infinite;
   control::Shapes shapes;
-  REQUIRE(link::decode_shapes(bytes(report), shapes));
-  CHECK(shapes.life_periods[1] == control::Shapes::lasting);
+  link::Materials materials{};
+  REQUIRE(link::decode_shapes(bytes(report), shapes, materials));
+  CHECK(shapes.life_periods[0] == control::Shapes::lasting);
   report.planes[0].surface.life_s = -infinite;
-  CHECK_FALSE(link::decode_shapes(bytes(report), shapes));
+  CHECK_FALSE(link::decode_shapes(bytes(report), shapes, materials));
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST_CASE("device and configuration, byte for byte") {
   CHECK(bench.get_descriptor(0x0200, 512).data ==
         bytes({9, 2,    100,  0,    4,  1,    0,    0xC0, 0,  // draws no current from the bus
                9, 4,    0,    0,    2,  0x03, 0,    0,    4,  // HID
-               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 159,  0,  //
+               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 168,  0,  //
                7, 5,    0x81, 3,    64, 0,    1,              //
                7, 5,    0x01, 3,    64, 0,    1,              //
                9, 4,    1,    0,    1,  0xFF, 0,    0,    5,  // scope
@@ -53,7 +53,7 @@ TEST_CASE("device and configuration, byte for byte") {
                7, 5,    0x83, 3,    64, 0,    8,              //
                9, 4,    3,    0,    0,  0xFE, 1,    1,    7,  // firmware update
                9, 0x21, 0x0B, 0xFF, 0,  0,    0x08, 0x10, 0x01}));
-  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 159, 0}));
+  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 168, 0}));
   CHECK(bench.get_descriptor(0x2100, 64, 1, 2).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 79, 0}));
 }
 
@@ -65,6 +65,7 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
   } reports[] = {{0x01, 2, 0x81, sizeof(PoseReport)},
                  {0x02, 3, 0x91, sizeof(CommandReport)},
                  {0x03, 8, 0x91, sizeof(ForceReport)},
+                 {0x04, 18, 0x91, sizeof(LocalModelReport)},
                  {0x10, 4, 0xB1, sizeof(InformationReport)},
                  {0x11, 5, 0xB1, sizeof(ParametersReport)},
                  {0x12, 6, 0xB1, sizeof(TransactionReport)},

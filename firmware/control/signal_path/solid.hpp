@@ -1,0 +1,36 @@
+// Solids that the tip cannot enter: half-space, sphere, capsule, cylinder, box.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/control/signal_path/vector.hpp"
+
+namespace inkwell::control {
+
+/// All points within `radius_m` of a core. The core of a sphere is its center. The core of a capsule or of an infinite
+/// cylinder is a segment. The core of a rounded box is a smaller box, and the core of a rounded cylinder is a smaller
+/// cylinder.
+struct Solid {
+  enum class Core : std::uint32_t { nothing, half_space, point, segment, cylinder, box };
+
+  Core core = Core::nothing;
+  Vector3 centre_m;
+  /// Unit vectors: the normal of a half-space, the axis of a segment or cylinder, the edges of a box.
+  std::array<Vector3, 3> axes{};
+  std::array<float, 3> half_m{};  ///< half lengths of the core along the axes
+  float core_radius_m = 0.0f;     ///< of the core of a cylinder
+  float radius_m = 0.0f;          ///< radius, or rounding of the edges; 0 for a half-space
+  float reach_squared_m2 = 0.0f;  ///< a proxy at a larger distance from `centre_m` does not touch the solid
+};
+
+/// Relation of a point to the surface of a solid.
+struct Foot {
+  Vector3 normal;  ///< unit vector, outward
+  float height_m;  ///< distance from the surface, negative inside
+};
+
+/// Returns false if the solid has no normal at the point, because the point is in the core.
+bool find_foot(const Solid& solid, const Vector3& point_m, Foot& foot);
+
+}  // namespace inkwell::control

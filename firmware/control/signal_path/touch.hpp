@@ -1,0 +1,109 @@
+// Contact of the tip with all objects: walls, planes, solids and local model.
+//
+// A proxy is the point of the free space that the tip would have if the objects were rigid (Zilles and Salisbury, "A
+// constraint-based god-object method for haptic display", IROS 1995). At the proxy, each object gives a barrier: the
+// tangent plane of its surface. The proxy moves to the point nearest to the probe that no barrier excludes. Spring and
+// damper act between proxy and probe. Friction holds the proxy back.
+//
+// A new local model does not increase the force: its barriers recede to the proxy, so the previous proxy remains in the
+// free space, and the nearest free point is not farther from the probe than the previous proxy.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/control/signal_path/contact.hpp"
+#include "firmware/control/signal_path/local_model.hpp"
+#include "firmware/control/signal_path/shapes.hpp"
+#include "firmware/control/signal_path/surface.hpp"
+#include "firmware/control/signal_path/vector.hpp"
+
+namespace inkwell::control {
+
+/// Excludes the half-space below a tangent plane.
+struct Barrier {
+  Vector3 normal;           ///< unit vector, points into the free space
+  float depth_m;            ///< depth of the probe; negative if the barrier does not exclude the probe
+  const Surface* surface;
+  const Vector3* velocity_m_per_s;  ///< of the surface
+  float rise_m;             ///< outward movement of a recessed surface in this period
+  bool is_wall;
+};
+
+/// Barriers of one period. Further barriers are ignored.
+struct Barriers {
+  static constexpr std::size_t maximum = 12;
+
+  std::array<Barrier, maximum> list{};
+  std::size_t count = 0;
+  /// A barrier at this distance from the probe may exclude the point to which other barriers push the proxy.
+  float reach_m = 0.0f;
+
+  /// Ignores a barrier beyond the reach.
+  void add(const Barrier& barrier);
+};
+
+/// Barriers that support the nearest free point. That point is the probe plus the sum of depth times normal.
+struct Support {
+  std::array<const Barrier*, 3> barriers;
+  std::array<float, 3> depth_m;
+  std::size_t count = 0;
+
+  void add(const Barrier& barrier, float barrier_depth_m) {
+    barriers[count] = &barrier;
+    depth_m[count++] = barrier_depth_m;
+  }
+};
+
+/// Finds the point nearest to the probe that no barrier excludes. Barriers within 0.2 degrees of parallel count as one
+/// barrier.
+Support find_support(const Barriers& barriers);
+
+/// Force on the hand.
+struct TouchForce {
+  Vector3 walls_N;
+  Vector3 objects_N;      ///< shapes and local model
+  float raised_J = 0.0f;  ///< work of recessed surfaces that moved outward in this period
+};
+
+class Touch {
+ public:
+  LivingShapes shapes;
+
+  /// Activates a new model. The board changes the model in each period until the next call.
+  void follow(LocalModel& model);
+  /// Advances the local model by one period. Returns true if the model has expired.
+  bool age_model();
+  /// Returns true if there are shapes or features of a local model.
+  bool has_objects() const { return shapes.any() || (model_ != nullptr && model_->count != 0); }
+
+  /// Runs one period. `walls` is null if the hand does not feel the walls of the box. Without objects, wall_force_N()
+  /// returns the same force of the walls in fewer cycles.
+  const TouchForce& step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls, const Surface& wall);
+  /// Ends all contacts. Call this function in each period without force and without objects.
+  void release(const Vector3& probe_m) {
+    proxy_m_ = probe_m;
+    touches_ = false;
+  }
+
+  const Vector3& proxy_m() const { return proxy_m_; }
+  bool slides() const { return slides_; }
+
+ private:
+  void collect(const Vector3& probe_m, const Box* walls, const Surface& wall);
+  void add_model(const Vector3& probe_m);
+
+  LocalModel* model_ = nullptr;
+  bool model_is_new_ = false;
+  Vector3 proxy_m_;
+  bool touches_ = false;
+  bool slides_ = false;
+  bool is_wedged_ = false;  ///< more than one barrier supported the proxy in the previous period
+  // Results of this period are members, because the initialization of local variables takes cycles.
+  Barriers barriers_;
+  TouchForce force_;
+};
+
+}  // namespace inkwell::control

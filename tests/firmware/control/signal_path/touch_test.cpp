@@ -1,0 +1,409 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/control/signal_path/touch.hpp"
+#include "tests/firmware/control/arms.hpp"
+
+namespace {
+
+using namespace inkwell;
+using control::Contact;
+using control::LocalModel;
+using control::Shapes;
+using control::Solid;
+using control::Surface;
+using control::Touch;
+using control::TouchForce;
+using control::Vector3;
+using Core = Solid::Core;
+
+constexpr Surface smooth{.stiffness_N_per_m = 1000.0f,
+                         .m_per_N = 1e-3f,
+                         .damping_Ns_per_m = 0.0f,
+                         .static_friction = 0.0f,
+                         .dynamic_friction = 0.0f,
+                         .viscosity_Ns_per_m = 0.0f};
+
+Surface rough(float static_friction, float dynamic_friction) {
+  Surface surface = smooth;
+  surface.static_friction = static_friction;
+  surface.dynamic_friction = dynamic_friction;
+  return surface;
+}
+
+Surface damped(float damping_Ns_per_m) {
+  Surface surface = smooth;
+  surface.damping_Ns_per_m = damping_Ns_per_m;
+  return surface;
+}
+
+float length(const Vector3& vector) { return std::sqrt(control::dot(vector, vector)); }
+
+void put_plane(Shapes& shapes, std::size_t number, const Vector3& normal, float offset_m, const Surface& surface) {
+  shapes.planes[number] = {normal, offset_m};
+  shapes.surfaces[number] = surface;
+  shapes.life_periods[number] = Shapes::lasting;
+}
+
+void put_solid(Shapes& shapes, std::size_t number, Solid solid, const Surface& surface) {
+  solid.reach_squared_m2 = 1.0f;
+  shapes.solids[number] = solid;
+  shapes.surfaces[Shapes::planes_maximum + number] = surface;
+  shapes.life_periods[Shapes::planes_maximum + number] = Shapes::lasting;
+}
+
+/// Touches shapes only.
+struct Hand {
+  Shapes shapes;
+  Touch touch;
+  Vector3 probe_m;
+
+  void place() { touch.shapes.replace(shapes); }
+  Vector3 at(const Vector3& point_m, const Vector3& velocity_m_per_s = {}) {
+    probe_m = point_m;
+    return touch.step(probe_m, velocity_m_per_s, nullptr, smooth).objects_N;
+  }
+  /// Moves the probe on a straight line in steps of at most 50 um, and returns the last force.
+  Vector3 move_to(const Vector3& point_m) {
+    const Vector3 way_m = point_m - probe_m, from_m = probe_m;
+    const int steps = 1 + static_cast<int>(length(way_m) / 50e-6f);
+    Vector3 force_N;
+    for (int i = 1; i <= steps; ++i) force_N = at(from_m + (static_cast<float>(i) / static_cast<float>(steps)) * way_m);
+    return force_N;
+  }
+};
+
+constexpr Vector3 up{0.0f, 0.0f, 1.0f};
+
+TEST_CASE("without objects there is no force, and the proxy is the probe") {
+  Touch touch;
+  CHECK(!touch.has_objects());
+  const TouchForce force = touch.step({0.1f, -0.2f, -5.0f}, {1.0f, 1.0f, 1.0f}, nullptr, smooth);
+  CHECK(force.objects_N == Vector3{});
+  CHECK(force.walls_N == Vector3{});
+  CHECK(touch.proxy_m() == Vector3{0.1f, -0.2f, -5.0f});
+}
+
+TEST_CASE("a plane pushes along its normal with spring and damper, and never pulls") {
+  Hand hand;
+  put_plane(hand.shapes, 7, {0.6f, 0.0f, 0.8f}, 0.01f, damped(2.0f));
+  hand.place();
+  CHECK(hand.at({0.01f, 0.3f, 0.01f}) == Vector3{});  // 4 mm above the plane
+  const Vector3 force_N = hand.at({0.0f, 0.3f, 0.0f}, {0.0f, 1.0f, -0.5f});
+  const float expected_N = 1000.0f * 0.01f + 2.0f * 0.8f * 0.5f;
+  CHECK(force_N.x == doctest::Approx(0.6f * expected_N));
+  CHECK(force_N.y == 0.0f);
+  CHECK(force_N.z == doctest::Approx(0.8f * expected_N));
+  CHECK(hand.at({0.0f, 0.3f, 0.0f}, {0.0f, 0.0f, 30.0f}) == Vector3{});
+}
+
+TEST_CASE("every plane and every solid is felt") {
+  for (std::size_t number = 0; number < Shapes::maximum; ++number) {
+    CAPTURE(number);
+    Hand hand;
+    if (number < Shapes::planes_maximum)
+      put_plane(hand.shapes, number, up, 0.0f, smooth);
+    else
+      put_solid(hand.shapes, number - Shapes::planes_maximum,
+                {.core = Core::point, .centre_m = {0.0f, 0.0f, -0.01f}, .radius_m = 0.01f}, smooth);
+    hand.place();
+    CHECK(hand.at({0.0f, 0.0f, -0.001f}).z == doctest::Approx(1.0f));
+  }
+}
+
+TEST_CASE("walls at right angles give the force of the paper, with damping, also at edges and corners") {
+  tests::Random random{3};
+  const control::Box box{{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}};
+  const Surface wall = damped(5.0f);
+  for (int i = 0; i < 2000; ++i) {
+    const auto coordinate_m = [&] { return random.between(-0.056f, 0.056f); };
+    const Vector3 probe_m{coordinate_m(), coordinate_m(), coordinate_m()};
+    const Vector3 velocity_m_per_s{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+    const Contact contact = find_contact(probe_m, box);
+    const Vector3 paper_N = wall_force_N(contact, velocity_m_per_s, {1000.0f, 5.0f});
+    Touch touch;
+    const TouchForce force = touch.step(probe_m, velocity_m_per_s, &box, wall);
+    CHECK(length(force.walls_N - paper_N) < 1e-4f);
+    CHECK(force.objects_N == Vector3{});
+  }
+}
+
+TEST_CASE("two planes that meet at a flat angle are as hard below their edge as one plane") {
+  for (const float angle_rad : {0.0f, 0.001f, 0.02f, 0.2f}) {
+    CAPTURE(angle_rad);
+    Hand hand;
+    const float sine = std::sin(angle_rad), cosine = std::cos(angle_rad);
+    put_plane(hand.shapes, 0, {sine, 0.0f, cosine}, 0.0f, damped(2.0f));
+    put_plane(hand.shapes, 1, {-sine, 0.0f, cosine}, 0.0f, damped(2.0f));
+    hand.place();
+    const Vector3 force_N = hand.at({0.0f, 0.0f, -0.001f}, {0.0f, 0.0f, -0.1f});
+    CHECK(force_N.z == doctest::Approx(1.2f).epsilon(0.05));
+    CHECK(force_N.x == doctest::Approx(0.0f).scale(1).epsilon(0.03));
+  }
+}
+
+TEST_CASE("the proxy is the nearest point of the intersection of up to three half-spaces") {
+  tests::Random random{11};
+  const auto direction = [&] {
+    const Vector3 vector{random.between(-1, 1), random.between(-1, 1), random.between(0.2f, 1)};
+    return (1.0f / length(vector)) * vector;
+  };
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 normals[3] = {direction(), direction(), direction()};
+    Hand hand;
+    for (std::size_t k = 0; k < 3; ++k) put_plane(hand.shapes, k, normals[k], 0.0f, smooth);
+    hand.place();
+    const Vector3 probe_m{random.between(-0.004f, 0.004f), random.between(-0.004f, 0.004f), -0.003f};
+    hand.at(probe_m);  // the first period finds only the barriers that exclude the probe
+    const Vector3 force_N = hand.at(probe_m);
+    const Vector3 proxy_m = probe_m + 1e-3f * force_N;
+    // The proxy is in the free space, and no free point near the proxy is nearer to the probe.
+    for (const Vector3& normal : normals) CHECK(dot(normal, proxy_m) > -5e-6f);
+    for (int k = 0; k < 40; ++k) {
+      const Vector3 other_m =
+          proxy_m + Vector3{random.between(-1e-3f, 1e-3f), random.between(-1e-3f, 1e-3f), random.between(-1e-3f, 1e-3f)};
+      const bool is_free = std::ranges::all_of(normals, [&](const Vector3& normal) { return dot(normal, other_m) >= 0; });
+      if (is_free) CHECK(length(other_m - probe_m) > length(proxy_m - probe_m) - 5e-6f);
+    }
+  }
+}
+
+TEST_CASE("a sphere pushes outward by its depth while the probe slides around it") {
+  Hand hand;
+  const Vector3 centre_m{0.01f, 0.02f, 0.03f};
+  put_solid(hand.shapes, 0, {.core = Core::point, .centre_m = centre_m, .radius_m = 0.02f}, smooth);
+  hand.place();
+  hand.at(centre_m + Vector3{0.0f, 0.0f, 0.021f});
+  for (int i = 0; i <= 2000; ++i) {
+    const float angle_rad = 0.002f * static_cast<float>(i);
+    const Vector3 out{std::sin(angle_rad), 0.0f, std::cos(angle_rad)};
+    const Vector3 force_N = hand.at(centre_m + 0.018f * out);
+    if (i < 5) continue;
+    CHECK(length(force_N) == doctest::Approx(2.0f).epsilon(2e-3));
+    CHECK(dot(force_N, out) == doctest::Approx(2.0f).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("a probe that is pushed through the middle of a solid is still pushed back to its entry") {
+  const Solid solids[] = {
+      {.core = Core::point, .radius_m = 0.004f},
+      {.core = Core::segment, .axes = {Vector3{1, 0, 0}}, .half_m = {0.02f}, .radius_m = 0.004f},
+      {.core = Core::box, .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up}, .half_m = {0.02f, 0.02f, 1e-4f}, .radius_m = 5e-4f},
+      {.core = Core::cylinder, .axes = {up}, .half_m = {1e-4f}, .core_radius_m = 0.02f, .radius_m = 5e-4f}};
+  for (const Solid& solid : solids) {
+    CAPTURE(static_cast<int>(solid.core));
+    Hand hand;
+    put_solid(hand.shapes, 3, solid, smooth);
+    hand.place();
+    hand.at({0.0f, 0.0f, 0.006f});
+    const float top_m = solid.radius_m + (solid.core == Core::box || solid.core == Core::cylinder ? 1e-4f : 0.0f);
+    CHECK(hand.move_to({0.0f, 0.0f, -0.003f}).z == doctest::Approx(1000.0f * (top_m + 0.003f)).epsilon(1e-2));
+    CHECK(hand.move_to({0.0f, 0.0f, 0.006f}) == Vector3{});
+  }
+}
+
+TEST_CASE("friction sticks up to its static bound, then slides with the dynamic one, and sticks again") {
+  Hand hand;
+  put_plane(hand.shapes, 0, up, 0.0f, rough(0.8f, 0.5f));
+  hand.place();
+  const auto force_at = [&](float x_m) { return hand.at({x_m, 0, -0.001f}); };
+  CHECK(force_at(0.0f).x == 0.0f);  // 1 N of normal force
+  CHECK(force_at(0.0007f).x == doctest::Approx(-0.7f));
+  CHECK(force_at(0.0009f).x == doctest::Approx(-0.5f));
+  CHECK(hand.touch.slides());
+  CHECK(force_at(0.0020f).x == doctest::Approx(-0.5f));
+  CHECK(force_at(0.0021f).x == doctest::Approx(-0.5f));
+  CHECK(force_at(0.0020f).x == doctest::Approx(-0.4f));  // reversed: static friction from the stopping point
+  CHECK(!hand.touch.slides());
+  CHECK(force_at(0.0012f).x == doctest::Approx(0.4f));
+  CHECK(force_at(0.0012f).z == doctest::Approx(1.0f));
+}
+
+TEST_CASE("the friction ends where the probe leaves the surface, and starts where the probe touches it again") {
+  Hand hand;
+  put_plane(hand.shapes, 0, up, 0.0f, rough(1.0f, 1.0f));
+  hand.place();
+  hand.at({0.0f, 0.0f, -0.001f});
+  CHECK(hand.at({0.0005f, 0.0f, -0.001f}).x == doctest::Approx(-0.5f));
+  hand.at({0.0005f, 0.0f, 0.001f});
+  CHECK(hand.at({0.0005f, 0.0f, -0.001f}).x == 0.0f);
+}
+
+TEST_CASE("the friction continues while the probe passes from one surface to the next") {
+  Hand hand;
+  put_plane(hand.shapes, 0, {0.05f, 0.0f, 0.99875f}, 0.0f, rough(0.5f, 0.5f));
+  put_plane(hand.shapes, 1, {-0.05f, 0.0f, 0.99875f}, 0.0f, rough(0.5f, 0.5f));
+  hand.place();
+  hand.at({-0.01f, 0.0f, -0.001f});
+  float least_N = 1.0f, most_N = 0.0f;
+  for (int i = 0; i < 2000; ++i) {
+    const float x_m = -0.005f + 5e-6f * static_cast<float>(i);
+    const Vector3 force_N = hand.at({x_m, 0.0f, 0.05f * std::fabs(x_m) - 0.001f});
+    if (i < 400) continue;
+    least_N = std::min(least_N, -force_N.x);
+    most_N = std::max(most_N, -force_N.x);
+  }
+  CHECK(least_N > 0.4f);
+  CHECK(most_N < 0.65f);
+}
+
+TEST_CASE("viscosity acts along the surface and not more than the normal force") {
+  Surface surface = smooth;
+  surface.viscosity_Ns_per_m = 3.0f;
+  Hand hand;
+  put_plane(hand.shapes, 0, up, 0.0f, surface);
+  hand.place();
+  const Vector3 force_N = hand.at({0.0f, 0.0f, -0.001f}, {0.1f, 0.0f, -0.5f});
+  CHECK(force_N.x == doctest::Approx(-0.3f));
+  CHECK(force_N.z == doctest::Approx(1.0f));
+  CHECK(hand.at({0.0f, 0.0f, -0.001f}, {2.0f, 0.0f, 0.0f}).x == doctest::Approx(-1.0f));
+  CHECK(hand.at({0.0f, 0.0f, 0.001f}, {0.1f, 0.0f, 0.0f}) == Vector3{});
+}
+
+// ---- local models ----
+
+control::Feature plane_feature(const Vector3& normal, float height_m, const Surface& surface) {
+  return {.solid = {.core = Core::half_space, .centre_m = height_m * normal, .axes = {normal}}, .surface = surface};
+}
+
+LocalModel model_of(std::initializer_list<control::Feature> features) {
+  LocalModel model;
+  std::ranges::copy(features, model.features.begin());
+  model.count = features.size();
+  model.life_periods = 400;
+  return model;
+}
+
+TEST_CASE("a surface that appears under the tip moves outward slowly, and its work is reported") {
+  Touch touch;
+  const Vector3 probe_m{0.0f, 0.0f, -0.001f};
+  touch.step(probe_m, {}, nullptr, smooth);
+  LocalModel model = model_of({plane_feature(up, 0.0f, smooth)});
+  touch.follow(model);
+  float force_N = 0.0f, work_J = 0.0f;
+  for (int period = 0; period < 400; ++period) {
+    const TouchForce force = touch.step(probe_m, {}, nullptr, smooth);
+    CHECK(force.objects_N.z - force_N < 4.1e-3f);
+    force_N = force.objects_N.z;
+    work_J += force.raised_J;
+    if (period == 100) CHECK(force_N == doctest::Approx(0.4f).epsilon(1e-2));
+  }
+  CHECK(force_N == doctest::Approx(1.0f).epsilon(1e-3));
+  CHECK(work_J == doctest::Approx(0.5f * 1000.0f * 1e-6f).epsilon(0.02));  // of the spring
+}
+
+TEST_CASE("surfaces of any stiffness rise by at most 5 mN in a period, also in grooves of 60 degrees") {
+  for (const float stiffness_N_per_m : {100.0f, 1000.0f, 3000.0f})
+    for (const float lean : {0.0f, 0.5f, 0.866f}) {
+      CAPTURE(stiffness_N_per_m);
+      CAPTURE(lean);
+      Surface surface = smooth;
+      surface.stiffness_N_per_m = stiffness_N_per_m;
+      surface.m_per_N = 1.0f / stiffness_N_per_m;
+      const float height = std::sqrt(1.0f - lean * lean);
+      Touch touch;
+      const Vector3 probe_m{0.0f, 0.0f, -0.001f};
+      touch.step(probe_m, {}, nullptr, smooth);
+      LocalModel model = model_of({plane_feature({lean, 0, height}, 0, surface), plane_feature({-lean, 0, height}, 0, surface)});
+      touch.follow(model);
+      float force_N = 0.0f;
+      for (int period = 0; period < 4000; ++period) {
+        const TouchForce force = touch.step(probe_m, {}, nullptr, smooth);
+        // When the second surface touches, it still moves at the speed of one surface.
+        CHECK(force.objects_N.z - force_N < (period == 1 ? 1.7e-2f : 5e-3f));
+        force_N = force.objects_N.z;
+      }
+      CHECK(force_N == doctest::Approx(1e-3f * stiffness_N_per_m).epsilon(1e-2));
+    }
+}
+
+TEST_CASE("an exchange of local models under a pressing hand does not raise the force") {
+  tests::Random random{17};
+  const auto direction = [&] {
+    const Vector3 vector{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+    return (1.0f / length(vector)) * vector;
+  };
+  Touch touch;
+  const Vector3 probe_m{0.001f, 0.002f, -0.003f};
+  touch.step(probe_m, {}, nullptr, smooth);
+  LocalModel models[2];
+  float before_N = 0.0f, largest_N = 0.0f;
+  for (int report = 0; report < 3000; ++report) {
+    LocalModel& model = models[report % 2];
+    model = {};
+    model.life_periods = 400;
+    model.count = static_cast<std::size_t>(random.between(0, 3.99f));
+    for (std::size_t i = 0; i < model.count; ++i) {
+      control::Feature& feature = model.features[i];
+      const float kind = random.between(0, 3);
+      feature.surface = smooth;
+      feature.solid = {.core = kind < 1 ? Core::half_space : (kind < 2 ? Core::point : Core::segment),
+                       .centre_m = 0.004f * direction(),
+                       .axes = {direction()},
+                       .half_m = {1.0f},
+                       .radius_m = kind < 1 ? 0.0f : random.between(0.0005f, 0.01f)};
+    }
+    touch.follow(model);
+    for (int period = 0; period < 20; ++period) {
+      const float force_N = length(touch.step(probe_m, {}, nullptr, smooth).objects_N);
+      if (period == 0) CHECK(force_N - before_N < 1e-3f);
+      before_N = force_N;
+      largest_N = std::max(largest_N, force_N);
+    }
+  }
+  CHECK(largest_N > 0.5f);
+}
+
+TEST_CASE("a moving surface carries the hand and its friction along at the servo rate") {
+  Touch touch;
+  const Vector3 start_m{0.0f, 0.0f, -0.0005f};
+  LocalModel model = model_of({plane_feature(up, 0.0f, rough(1.0f, 1.0f))});
+  model.features[0].velocity_m_per_s = {0.2f, 0.0f, 0.1f};
+  touch.step({0, 0, 0.001f}, {}, nullptr, smooth);
+  touch.follow(model);
+  // The probe moves with the surface, so the force does not change.
+  Vector3 force_N;
+  for (int period = 1; period <= 400; ++period) {
+    const float time_s = protocol::servo_period_s * static_cast<float>(period);
+    force_N = touch.step(start_m + time_s * Vector3{0.2f, 0.0f, 0.1f}, {0.2f, 0.0f, 0.1f}, nullptr, smooth).objects_N;
+    if (period > 150) CHECK(force_N.z == doctest::Approx(0.5f).epsilon(1e-2));
+    CHECK(std::fabs(force_N.x) < 1e-2f);
+  }
+  // The surface continues, and the probe stops: the surface pushes and pulls the probe along.
+  const Vector3 stopped_m = start_m + 0.02f * Vector3{0.2f, 0.0f, 0.1f};
+  for (int period = 1; period <= 40; ++period) force_N = touch.step(stopped_m, {}, nullptr, smooth).objects_N;
+  CHECK(force_N.z == doctest::Approx(0.7f).epsilon(0.02));
+  CHECK(force_N.x == doctest::Approx(0.4f).epsilon(0.05));
+}
+
+TEST_CASE("a turning cylinder turns its axis, and a local model expires after its life") {
+  Touch touch;
+  LocalModel model = model_of({{.solid = {.core = Core::segment, .axes = {Vector3{1, 0, 0}}, .half_m = {1.0f}, .radius_m = 0.002f},
+                                .surface = smooth,
+                                .axis_rate_per_s = {0.0f, 10.0f, 0.0f}}});
+  model.life_periods = 20;
+  touch.follow(model);
+  CHECK(touch.has_objects());
+  for (int period = 0; period < 20; ++period) {
+    CHECK(!touch.age_model());
+    touch.step({0, 0, 0.1f}, {}, nullptr, smooth);
+  }
+  CHECK(model.features[0].solid.axes[0].y == doctest::Approx(0.01f).epsilon(1e-3));
+  CHECK(touch.age_model());
+  CHECK(!touch.has_objects());
+  CHECK(!touch.age_model());
+}
+
+TEST_CASE("walls and objects share one proxy") {
+  const control::Box box{{-0.05f, -0.05f, 0.0f}, {0.05f, 0.05f, 0.05f}};
+  Hand hand;
+  put_plane(hand.shapes, 0, up, 0.0f, smooth);  // in the wall
+  hand.place();
+  const Vector3 probe_m{0.0f, 0.0f, -0.001f};
+  const TouchForce force = hand.touch.step(probe_m, {}, &box, smooth);
+  CHECK((force.walls_N + force.objects_N).z == doctest::Approx(1.0f).epsilon(1e-3));
+}
+
+}  // namespace
