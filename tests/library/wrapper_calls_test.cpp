@@ -68,6 +68,7 @@ TEST_CASE("C++: states, abilities, kinematics, claims and torques") {
   CHECK(wait_for_devices(known, 0));
   CHECK(known.back().address == board.address);
   CHECK(kind_of_address("virtual") == INKWELL_OWN_BOARD);
+  CHECK(names().empty());
   CHECK(fault_name(INKWELL_FAULT_OVER_SPEED) == "over_speed");
   CHECK(fault_name(-1).empty());
   CHECK(fault_text(INKWELL_FAULT_OVER_SPEED).size() > 10);

@@ -170,7 +170,7 @@ class Examples(unittest.TestCase):
 
     def test_missing_addresses_are_reported(self):
         for name in "two_arms.cpp", "two_arms.py":
-            program = subprocess.run([*command(name)], stderr=subprocess.PIPE, text=True)
+            program = subprocess.run([*command(name), "left"], stderr=subprocess.PIPE, text=True)
             self.assertNotEqual(program.returncode, 0)
             self.assertIn("Give the addresses of two arms", program.stderr)
 

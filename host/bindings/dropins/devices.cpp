@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
@@ -10,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "host/bindings/dropins/device_names.hpp"
 #include "host/bindings/dropins/errors.hpp"
 
 namespace inkwell::dropins {
@@ -48,14 +48,18 @@ std::string Devices::address_for(const std::string& name) const {
   const auto arms = list_arms();
   for (const auto& arm : arms)
     if (!name.empty() && (name == arm.serial_number || name == arm.address)) return arm.address;
+  const auto names = list_names();
+  const auto configured = configured_arm(names);
+  // INKWELL_DEVICE without a name selects one arm for all names that the program uses.
+  if (!name.empty() && (configured.address.empty() || configured.has_name))
+    if (const std::string bound = bound_address(names, name); !bound.empty()) return bound;
   // A program-specific name such as "Left" selects the next arm that this program has not opened.
   const auto is_open = [this](const std::string& address) {
     return !makes_a_board(address) && std::any_of(devices_.begin(), devices_.end(), [&](const auto& device) {
       return device && device->address() == address;
     });
   };
-  const char* configured = std::getenv("INKWELL_DEVICE");
-  if (configured != nullptr && *configured != '\0' && !is_open(configured)) return configured;
+  if (!configured.address.empty() && !is_open(configured.address)) return configured.address;
   for (const auto& arm : arms)
     if (!is_open(arm.address)) return arm.address;
   if (!arms.empty())
@@ -73,12 +77,19 @@ Handle Devices::open(const char* given) {
   try {
     {
       const std::lock_guard lock(mutex_);
-      for (const auto& device : devices_)
-        if (device && (device->name() == name || (!makes_a_board(name) && device->address() == name))) {
-          raise(device_already_initiated, device->handle());
-          return invalid_handle;
-        }
+      const auto is_taken = [&](const auto& is_same) {
+        const auto found =
+            std::find_if(devices_.begin(), devices_.end(), [&](const auto& each) { return each && is_same(*each); });
+        if (found != devices_.end()) raise(device_already_initiated, (*found)->handle());
+        return found != devices_.end();
+      };
+      const auto has_address = [](const Device& device, const std::string& text) {
+        return !text.empty() && !makes_a_board(text) && device.address() == text;
+      };
+      if (is_taken([&](const Device& device) { return device.name() == name || has_address(device, name); }))
+        return invalid_handle;
       address = address_for(name);
+      if (is_taken([&](const Device& device) { return has_address(device, address); })) return invalid_handle;
       const auto free_slot = std::find(devices_.begin(), devices_.end(), nullptr);
       handle = static_cast<Handle>(free_slot - devices_.begin());
     }

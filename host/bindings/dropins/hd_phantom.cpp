@@ -10,6 +10,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "host/client/process/cancellation.hpp"
 #include "host/client/process/fork.hpp"
 
+#include "host/bindings/dropins/device_names.hpp"
 #include "host/bindings/dropins/hd_interface.hpp"
 
 using namespace inkwell::dropins;
@@ -131,14 +133,20 @@ void stop_servo() {
   servo().runs = false;
 }
 
+/// The arm in INKWELL_DEVICE has the number 0. The other arms have the order of inkwell_list_devices().
 void list_arms() {
   std::size_t count = 0;
   if (inkwell_list_devices(nullptr, 0, &count) != INKWELL_OK) return;
   std::vector<inkwell_device> arms(count);
   if (inkwell_list_devices(arms.data(), arms.size(), &count) != INKWELL_OK) return;
   arms.resize(std::min(count, arms.size()));
-  // The arm in INKWELL_DEVICE is the last entry and must become the first entry.
-  std::reverse(arms.begin(), arms.end());
+  std::vector<inkwell_named_arm> names;
+  try {
+    names = list_names();
+  } catch (const std::runtime_error&) {  // hdPhantomOpen() reports the damaged file
+  }
+  const std::string first = configured_arm(names).address;
+  std::stable_partition(arms.begin(), arms.end(), [&](const auto& arm) { return first == arm.address; });
   servo().addresses.clear();
   for (const auto& arm : arms) servo().addresses.emplace_back(arm.address);
 }

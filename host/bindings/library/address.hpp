@@ -17,7 +17,9 @@ struct OpenedArm {
 /// Opens the arm at an address in the format of inkwell_open(). An empty address selects the address in INKWELL_DEVICE.
 /// Arms on USB ignore `lock_step`.
 OpenedArm open_arm(const std::string& address, device::LockStep* lock_step);
-/// Lists the available arms and their addresses.
+/// Lists the available arms and their addresses. The order is that of inkwell_list_devices().
 std::vector<inkwell_device> list_devices();
+/// Lists the names of arms and their addresses. Throws Error for a damaged file.
+std::vector<inkwell_named_arm> list_names();
 
 }  // namespace inkwell::library

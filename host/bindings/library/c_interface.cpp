@@ -53,6 +53,16 @@ inkwell_result inkwell_list_devices(inkwell_device* devices, size_t capacity, si
   });
 }
 
+inkwell_result inkwell_list_names(inkwell_named_arm* names, size_t capacity, size_t* count) {
+  return guarded([&] {
+    required(count, "The count");
+    if (capacity > 0) required(names, "The list of names");
+    const auto found = list_names();
+    *count = found.size();
+    std::copy_n(found.begin(), std::min(capacity, found.size()), names);
+  });
+}
+
 inkwell_result inkwell_kind_of_address(const char* address, inkwell_address_kind* kind) {
   return guarded([&] {
     required(kind, "The pointer to the kind");

@@ -99,6 +99,19 @@ std::vector<inkwell_device> list_devices() {
   return devices;
 }
 
+/// Returns a dictionary with the address of each name. The order is that of the file.
+py::dict list_names() {
+  std::vector<inkwell_named_arm> names;
+  std::size_t count = 0;
+  do {
+    names.resize(count);
+    call([&] { return inkwell_list_names(names.data(), names.size(), &count); });
+  } while (count > names.size());
+  py::dict addresses;
+  for (std::size_t i = 0; i < count; ++i) addresses[names[i].name] = names[i].address;
+  return addresses;
+}
+
 /// Returns the new list, or None if the list has not changed within the time-out.
 std::optional<std::vector<inkwell_device>> wait_for_devices(std::vector<inkwell_device> known, double timeout_s) {
   std::size_t count = known.size();
@@ -477,6 +490,8 @@ PYBIND11_MODULE(_native, module) {
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,
              "Lists the arms on this computer's USB, and the virtual board that INKWELL_DEVICE names.");
+  module.def("names", &inkwell::python::list_names,
+             "Returns the names of arms, such as \"left\", with their addresses. `inkwell arms bind` adds names.");
   module.def("wait_for_devices", &inkwell::python::wait_for_devices);
   module.def("faults", &inkwell::python::faults);
   module.def("parameters", &inkwell::python::parameters);

@@ -3,6 +3,7 @@
 #include "boards/known/boards.hpp"
 
 #include "host/client/command_line/help.hpp"
+#include "host/client/device/arm_names.hpp"
 
 namespace inkwell::command_line {
 
@@ -58,7 +59,8 @@ void DeviceOptions::add_to(CLI::App& app) {
           ->type_name("ADDRESS")
           ->check(not_empty())
           ->excludes(is_virtual_flag);
-  app.add_option("--serial", serial_number, "Use the arm on USB with this serial number; not with --virtual or --usbip")
+  app.add_option("--serial", serial_number,
+                 "Use the arm with this serial number or name; not with --virtual or --usbip")
       ->type_name("NUMBER")
       ->check(not_empty())
       ->excludes(is_virtual_flag)
@@ -96,9 +98,8 @@ device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode 
 
 device::Address DeviceOptions::address() const {
   if (is_virtual) return {.kind = device::Address::Kind::own_board, .arm = arm};
-  if (usbip.empty()) return {.kind = device::Address::Kind::usb, .serial_number = serial_number};
   try {
-    return device::parse_server(usbip);
+    return usbip.empty() ? device::named_address(serial_number) : device::parse_server(usbip);
   } catch (const device::BadAddress& error) {
     throw UsageError(error.what());
   }

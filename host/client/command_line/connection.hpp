@@ -38,8 +38,8 @@ struct DeviceOptions {
   std::string mode;  ///< empty: the default of the command
   std::uint64_t seed = 1;
   bool real_time = false;
-  std::string usbip;  ///< HOST:PORT or unix:PATH
-  std::string serial_number;
+  std::string usbip;          ///< HOST:PORT or unix:PATH
+  std::string serial_number;  ///< or name of an arm
   bool take_over = false;
   bool json = false;
   bool is_strict = false;  ///< a virtual board exits when the firmware violates a rule of the chip

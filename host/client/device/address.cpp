@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "host/client/device/arm_names.hpp"
 #include "host/client/device/nearest_name.hpp"
 
 namespace inkwell::device {
@@ -44,8 +45,24 @@ std::string no_endpoint_message(const Address& address) {
         address.server.text());
   if (address.serial_number.empty()) return "No arm was found on USB. Plug in an arm, or use a virtual board.";
   const auto others = find_arms({});
-  return fmt::format("No arm with the serial number {} is plugged in. {}", address.serial_number,
-                     others.empty() ? "Plug it in." : "The connected arms are:" + serial_numbers(others) + ".");
+  const std::string others_text =
+      others.empty() ? "Plug it in." : "The connected arms are:" + serial_numbers(others) + ".";
+  if (!address.name.empty())
+    return fmt::format("The arm {} is not plugged in. Its serial number in {} is {}. {}", address.name,
+                       arm_names_file().string(), address.serial_number, others_text);
+  return fmt::format("No arm with the serial number {} is plugged in. {}", address.serial_number, others_text);
+}
+
+std::string no_address_message(const std::string& text) {
+  const auto arms = read_arm_names();
+  std::vector<AddressForm> names(std::begin(address_forms), std::end(address_forms));
+  for (const auto& arm : arms) names.push_back({arm.name});
+  const std::string known = arms.empty() ? "No names are known; `inkwell arms bind` adds one."
+                                         : fmt::format("Known names: {}.", names_of(arms));
+  return fmt::format(
+      "`{}` is neither a serial number, a name nor another address.{} {} Give the serial number or the name of an arm, "
+      "usbip:HOST:PORT, usbip:unix:PATH or virtual.",
+      text, suggestion(names, text), known);
 }
 
 Address parse_board_options(std::string_view options) {
@@ -127,10 +144,7 @@ Endpoint find_arm(const Address& address) {
     endpoints = find_arms(address);
   }
   if (endpoints.empty() && !is_serial_number(address.serial_number))
-    throw BadAddress(fmt::format(
-        "`{}` is neither a serial number nor another address.{} Give the serial number of an arm, usbip:HOST:PORT, "
-        "usbip:unix:PATH or virtual.",
-        address.serial_number, suggestion(address_forms, address.serial_number)));
+    throw BadAddress(no_address_message(address.serial_number));
   if (endpoints.empty()) throw NoDevice(no_endpoint_message(address));
   if (address.kind == Address::Kind::usb && endpoints.size() > 1)
     throw SeveralArms(fmt::format("{} arms are plugged in. Choose one by its serial number:{}.", endpoints.size(),

@@ -43,11 +43,13 @@ class SeveralArms : public NoDevice {
 struct Address {
   enum class Kind : std::uint8_t { usb, usbip, own_board };
   Kind kind = Kind::usb;
-  std::string serial_number{};          ///< for `usb`; empty: the only arm
-  SocketAddress server{};               ///< for `usbip`
-  std::filesystem::path arm{};          ///< for `own_board`; empty: the Omni
-  std::filesystem::path elf{};          ///< for `own_board`; empty: the firmware of this installation
-  std::optional<std::uint64_t> seed{};  ///< for `own_board`
+  std::string serial_number{};             ///< for `usb`; empty: the only arm
+  SocketAddress server{};                  ///< for `usbip`
+  std::filesystem::path arm{};             ///< for `own_board`; empty: the Omni
+  std::filesystem::path elf{};             ///< for `own_board`; empty: the firmware of this installation
+  std::optional<std::uint64_t> seed{};     ///< for `own_board`
+  std::string name{};                      ///< if the user selected the arm by name (arm_names.hpp), otherwise empty
+  std::optional<SocketAddress> control{};  ///< control socket of a named virtual board
 };
 
 /// Throws BadAddress.

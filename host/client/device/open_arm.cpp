@@ -78,6 +78,7 @@ OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, Lock
     opened.endpoint = find_arm(address);
     if (opened.endpoint.is_virtual) opened.endpoint.lock_step = lock_step;
     opened.device = Device::open(opened.endpoint);
+    if (address.control) opened.control.emplace(*address.control);
   }
   opened.endpoint.serial_number = opened.device->information().serial_number;
   return opened;

@@ -15,7 +15,7 @@ namespace inkwell::device {
 
 struct OpenArm {
   std::unique_ptr<VirtualBoard> board;   ///< started for this arm
-  std::optional<ControlClient> control;  ///< control socket of `board`
+  std::optional<ControlClient> control;  ///< control socket of `board`, or of the virtual board that the address names
   Endpoint endpoint{};
   std::unique_ptr<Device> device;
   std::string arm_name;  ///< from the arm description, or empty

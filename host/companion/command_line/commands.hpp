@@ -31,6 +31,7 @@ struct CommandContext {
 #define INKWELL_COMMANDS(X) \
   X(info)                   \
   X(devices)                \
+  X(arms)                   \
   X(fault)                  \
   X(self_test)              \
   X(force)                  \

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/client/command_line/help.hpp"
+#include "host/client/device/arm_names.hpp"
 #include "host/client/device/device.hpp"
 #include "host/client/device/transport.hpp"
 #include "host/client/local/output.hpp"
@@ -32,11 +33,12 @@ std::string location_of(const Endpoint& endpoint) {
 struct Listed {
   std::string serial_number, product, location;
   std::string board;  ///< empty: not reported by the firmware, or the device did not answer
+  std::string name;   ///< from `inkwell arms bind`, or empty
 };
 
 /// The list includes devices that do not answer. The information request works with every protocol version.
 Listed query_arm(const Endpoint& endpoint) {
-  Listed listed{endpoint.serial_number, endpoint.product, location_of(endpoint), {}};
+  Listed listed{endpoint.serial_number, endpoint.product, location_of(endpoint), {}, {}};
   try {
     const auto information = device::Device(device::open_transport(endpoint)).information();
     listed.serial_number = information.serial_number;  // USB/IP device lists do not contain it
@@ -49,17 +51,21 @@ Listed query_arm(const Endpoint& endpoint) {
 
 int list_devices(const DeviceOptions& options) {
   const auto devices = found(options);
+  const auto names = device::read_arm_names();
   ordered_json json = ordered_json::array();
   for (const Endpoint& endpoint : devices) {
-    const Listed each = query_arm(endpoint);
+    Listed each = query_arm(endpoint);
+    each.name = device::name_of_address(names, device::address_of(endpoint));
     if (options.json)
       json.push_back({{"serial_number", each.serial_number},
                       {"product", each.product},
                       {"board", each.board},
-                      {"location", each.location}});
+                      {"location", each.location},
+                      {"name", each.name}});
     else
-      fmt::print("{:<26} {:<28} {:<20} {}\n", each.serial_number, each.product,
-                 each.board.empty() ? "unknown board" : each.board, each.location);
+      fmt::print("{:<26} {:<28} {:<20} {}{}{}\n", each.serial_number, each.product,
+                 each.board.empty() ? "unknown board" : each.board, each.location, each.name.empty() ? "" : "  ",
+                 each.name);
   }
   if (options.json)
     fmt::print("{}\n", json.dump(2));

@@ -23,6 +23,7 @@
 #include "host/client/local/interruption.hpp"
 #include "host/client/local/output.hpp"
 
+#include "host/companion/command_line/program_arms.hpp"
 #include "host/companion/command_line/program_libraries.hpp"
 
 namespace inkwell::command_line {
@@ -46,11 +47,6 @@ void pass_on(int signal, siginfo_t* information, void*) {
 std::string environment(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? std::string() : std::string(value);
-}
-
-void say_which_device(const device::Endpoint& endpoint, const std::string& address) {
-  local::print_error("inkwell: the program uses the arm {} ({}){}.\n", endpoint.serial_number, address,
-                     endpoint.is_virtual ? ", a simulation" : "");
 }
 
 /// Exit code of a program for which the dynamic linker has not found a library.
@@ -88,7 +84,7 @@ void explain_missing_library(const std::string& program) {
           program, library, library);
 }
 
-int run(const DeviceOptions& options, std::vector<std::string> words) {
+int run(const DeviceOptions& options, const std::string& arms_text, std::vector<std::string> words) {
   if (words.empty())
     throw UsageError("The program is missing. Give its name: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
   if (words.front().starts_with('-'))
@@ -98,14 +94,9 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
     throw device::Error(fmt::format(
         "The libraries in {} are missing. Build them with tools/build, or install Inkwell again.", libraries.string()));
 
-  auto connection = connect(options, BoardPace::real_time);
-  const auto address = device::address_of(connection.endpoint);
-  say_which_device(connection.endpoint, address);
-  connection.device.reset();  // from now on the program uses the arm
-
+  const ProgramArms arms = open_program_arms(options, arms_text);
   const std::string others = environment("LD_LIBRARY_PATH");
   setenv("LD_LIBRARY_PATH", (libraries.string() + (others.empty() ? "" : ":" + others)).c_str(), 1);
-  setenv("INKWELL_DEVICE", address.c_str(), 1);
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
@@ -138,19 +129,29 @@ void add_run_command(const CommandContext& context) {
       "Replaces the Omni's libraries with libHD.so and libhdPhantom.so of this arm, and sets INKWELL_DEVICE. With\n"
       "--virtual, a virtual board runs as long as the program. Options precede PROGRAM; words after it are its "
       "arguments.\n"
+      "With --arms, the program can open several arms by name, such as \"left\". The first arm is the default.\n"
       "The exit code is that of the program, or 128 plus the number of the signal that terminated the program.");
   const auto own = std::make_shared<DeviceOptions>();
   command->fallthrough(false);
   own->add_to(*command);
+  const auto arms = std::make_shared<std::string>();
+  command
+      ->add_option("--arms", *arms,
+                   "Names of the arms, such as left,right. With --virtual, a board starts for each name,\n"
+                   "and 2 means left,right")
+      ->type_name("NAMES")
+      ->check(not_empty());
   command->prefix_command();
   // After "--" CLI11 passes the remaining words to the parser of the main program.
   command->preparse_callback([&parser = context.program](std::size_t) { parser.prefix_command(); });
-  add_examples(*command, "inkwell run ./01-mydevice\ninkwell run --virtual ./HelloHapticDevice");
-  command->callback([context, own, command] {
+  add_examples(*command,
+               "inkwell run ./01-mydevice\ninkwell run --virtual ./HelloHapticDevice\n"
+               "inkwell run --virtual --arms 2 ./two-handed\ninkwell run --arms left,right ./two-handed");
+  command->callback([context, own, arms, command] {
     const bool marked = command->remaining().empty();
-    context.action = [&given = context.device, own, words = (marked ? context.program : *command).remaining()] {
+    context.action = [&given = context.device, own, arms, words = (marked ? context.program : *command).remaining()] {
       const bool before = given.is_virtual || !given.usbip.empty() || !given.serial_number.empty();
-      return run(before ? given : *own, words);
+      return run(before ? given : *own, *arms, words);
     };
   });
 }

@@ -43,10 +43,11 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
                 const std::string& theme) {
   std::unique_ptr<device::VirtualBoard> board;
   if (!theme.empty()) window_options.theme = theme == "light" ? window::Theme::light : window::Theme::dark;
-  window_options.serial_number = options.serial_number;
   window_options.firmware = installation::firmware();
   window_options.board = options.address();
+  window_options.serial_number = window_options.board.serial_number;
   window_options.virtual_board_control = control_socket(control);
+  if (!window_options.virtual_board_control) window_options.virtual_board_control = window_options.board.control;
   window_options.list_devices = [&options] { return device::find_arms(options.address()); };
   const auto start_virtual_board = [&options, &board](window::WindowOptions& of_window) {
     // The user moves the hand with the mouse, so board time must follow real time.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include "host/client/local/configuration_folder.hpp"
 #include "host/client/local/replaced_file.hpp"
 
 namespace inkwell::window {
@@ -273,11 +273,8 @@ void apply(toml::table& file, const WindowSettings& settings, const WindowSettin
 }  // namespace
 
 std::filesystem::path window_settings_path() {
-  if (const char* configuration = std::getenv("XDG_CONFIG_HOME"); configuration != nullptr && *configuration == '/')
-    return std::filesystem::path(configuration) / "inkwell" / "window.toml";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
-    return std::filesystem::path(home) / ".config" / "inkwell" / "window.toml";
-  return {};
+  const auto folder = local::configuration_folder();
+  return folder.empty() ? folder : folder / "window.toml";
 }
 
 LoadedSettings read_settings(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 // A spring between two arms. Each hand feels the motion of the other hand.
 //
-//   Usage: two_arms ADDRESS ADDRESS     addresses of the arms for inkwell_open()
+//   Usage: inkwell run --arms left,right two_arms     arms with these names; with --virtual, two simulated arms
+//          two_arms ADDRESS ADDRESS                   addresses of the arms for inkwell_open()
 #include <cstdio>
 
 #include <inkwell/inkwell.hpp>
@@ -14,11 +15,11 @@ inkwell::Vector pull_N(const inkwell::Pose& from, const inkwell::Pose& to) {
 }
 
 int main(int argc, char** argv) try {
-  if (argc != 3) {
+  if (argc != 1 && argc != 3) {
     std::fputs("Give the addresses of two arms, such as their serial numbers.\n", stderr);
     return 2;
   }
-  inkwell::Arm right(argv[2]), left(argv[1]);
+  inkwell::Arm right(argc == 3 ? argv[2] : "right"), left(argc == 3 ? argv[1] : "left");
   left.enable_force();
   right.enable_force();
   left.start_servo([&](const inkwell::Pose& here) {

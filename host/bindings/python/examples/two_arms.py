@@ -1,6 +1,7 @@
 """A spring between the hands of two arms: what one does, the other feels.
 
-    two_arms.py ADDRESS ADDRESS     of the arms, as inkwell.open() takes them
+    inkwell run --arms left,right python3 two_arms.py     arms with these names; with --virtual, two simulated arms
+    two_arms.py ADDRESS ADDRESS                           addresses of the arms for inkwell.open()
 """
 
 import sys
@@ -9,9 +10,10 @@ import inkwell
 
 STIFFNESS_N_PER_M = 150
 
-if len(sys.argv) != 3:
+if len(sys.argv) not in (1, 3):
     sys.exit("Give the addresses of two arms, such as their serial numbers.")
-with inkwell.open(sys.argv[2]) as right, inkwell.open(sys.argv[1]) as left:
+left_address, right_address = sys.argv[1:] or ("left", "right")
+with inkwell.open(right_address) as right, inkwell.open(left_address) as left:
     left.enable_force()
     right.enable_force()
 

@@ -19,7 +19,7 @@ from . import _requirements
 _requirements.check()
 
 from ._native import (Abilities, ArmState, Device, Driver, ForceMode, Information, Losses, Pose, State, Store, Stored, Test, TestItem,
-                      devices)
+                      devices, names)
 from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open
 from .device_list import wait_for_devices
@@ -37,7 +37,7 @@ __all__ = [
     "Abilities", "Arm", "ArmState", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceLost", "ForceMode", "InUse",
     "Incompatible", "Information", "Losses", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
     "Refused", "Samples", "Signal", "Sphere", "State", "Store", "Stored", "Surface", "Test", "TestItem", "TimedOut",
-    "VirtualHand", "devices", "open", "parameters_table", "signals", "wait_for_devices",
+    "VirtualHand", "devices", "names", "open", "parameters_table", "signals", "wait_for_devices",
 ]
 
 

@@ -456,6 +456,7 @@ def open(address: str | None = None, *, seed: int | None = None, arm: str | os.P
 
     address: None           the address in the environment variable INKWELL_DEVICE, otherwise the only arm on USB
              serial number  the arm on USB with this number
+             name           the arm with this name, such as "left"; inkwell.names() returns all names
              "usbip:HOST:PORT"  the arm of a USB/IP server, such as a running virtual board;
                             "usbip:unix:PATH" for a Unix socket
              "virtual"      a new virtual board, which exits with the arm

@@ -110,7 +110,8 @@ TEST_CASE("a misspelled address is not taken for a serial number") {
   const auto message = [](const char* text) {
     return message_of<device::BadAddress>([&] { device::find_arm(parse_address(text)); });
   };
-  CHECK(contains(message("virtul"), "`virtul` is neither a serial number nor another address. Did you mean virtual?"));
+  CHECK(contains(message("virtul"),
+                 "`virtul` is neither a serial number, a name nor another address. Did you mean virtual?"));
   CHECK(contains(message("usbp:127.0.0.1:3240"), "usbip:HOST:PORT"));
   CHECK(contains(message("127.0.0.1:3240"), "usbip:HOST:PORT"));
   usb.add_arm("my arm");

@@ -17,6 +17,7 @@
 #include "host/client/device/socket.hpp"
 #include "host/client/local/listener.hpp"
 #include "host/client/local/private_folder.hpp"
+#include "tests/environment.hpp"
 #include "tests/failure.hpp"
 #include "tests/plain_client.hpp"
 #include "tests/temporary_directory.hpp"
@@ -50,20 +51,6 @@ void leave_behind(const fs::path& path) {
   waitpid(child, nullptr, 0);
   REQUIRE(fs::is_socket(path));
 }
-
-/// Restores the environment variable in the destructor.
-class Environment {
- public:
-  Environment(const char* name, const std::string& value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    setenv(name, value.c_str(), 1);
-  }
-  ~Environment() { old_ ? setenv(name_, old_->c_str(), 1) : unsetenv(name_); }
-
- private:
-  const char* name_;
-  std::optional<std::string> old_;
-};
 
 }  // namespace
 

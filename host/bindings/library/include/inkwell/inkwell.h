@@ -84,8 +84,9 @@ typedef struct inkwell_device {
   int is_virtual; /* 1 for a simulation */
 } inkwell_device;
 
-/* Lists the arms on this computer's USB, and the virtual board if INKWELL_DEVICE names one that answers. Writes at most
- * `capacity` arms, and their total number to `count`. */
+/* Lists the arms on this computer's USB, and the virtual boards that answer and that have a name or are in
+ * INKWELL_DEVICE. Arms with a name come first, in the order of their names; the arm of INKWELL_DEVICE comes last if it
+ * is virtual and has no name. Writes at most `capacity` arms, and their total number to `count`. */
 INKWELL_API inkwell_result inkwell_list_devices(inkwell_device* devices, size_t capacity, size_t* count);
 
 /* Waits until an arm is plugged in or removed. `devices` and `count` contain the known list, from this function or from
@@ -94,12 +95,23 @@ INKWELL_API inkwell_result inkwell_list_devices(inkwell_device* devices, size_t 
 INKWELL_API inkwell_result inkwell_wait_for_devices(double timeout_s, inkwell_device* devices, size_t capacity,
                                                     size_t* count);
 
+/* A name, such as "left", that the user has bound to an arm with `inkwell arms bind`. */
+typedef struct inkwell_named_arm {
+  char name[64];
+  char address[128]; /* serial number, or another address for inkwell_open() */
+} inkwell_named_arm;
+
+/* Lists the names of arms in the order of the file inkwell/arms.toml in $XDG_CONFIG_HOME (~/.config), or of the file in
+ * the environment variable INKWELL_ARMS. The arms need not be connected. Writes at most `capacity` names, and their total
+ * number to `count`. A damaged file is an error. */
+INKWELL_API inkwell_result inkwell_list_names(inkwell_named_arm* names, size_t capacity, size_t* count);
+
 /* An open arm. */
 typedef struct inkwell_arm inkwell_arm;
 
 /* Kind of an address. */
 typedef enum inkwell_address_kind INKWELL_AS_INT {
-  INKWELL_ON_USB = 0,    /* any other text, which is used as a serial number */
+  INKWELL_ON_USB = 0,    /* any other text: a serial number, or a name, which may also belong to a virtual board */
   INKWELL_AT_SERVER = 1, /* "usbip:HOST:PORT" or "usbip:unix:PATH" */
   INKWELL_OWN_BOARD = 2  /* "virtual" or "virtual:FILE": each call starts a separate board */
 } inkwell_address_kind;
@@ -110,6 +122,7 @@ INKWELL_API inkwell_result inkwell_kind_of_address(const char* address, inkwell_
 /* Opens an arm. `address`:
  *   NULL or ""         the address in the environment variable INKWELL_DEVICE, otherwise the only arm on USB
  *   a serial number    the arm on USB with this number
+ *   a name             the arm with this name; see inkwell_list_names(). Upper and lower case are equal
  *   "usbip:HOST:PORT"  the arm of a USB/IP server, such as a running virtual board; "usbip:unix:PATH" for a
  *                      Unix socket
  *   "virtual"          a new virtual board, which is ready and exits with inkwell_close(); "virtual:FILE" with

@@ -61,6 +61,16 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
+/// See inkwell_list_names().
+inline std::vector<inkwell_named_arm> names() {
+  std::size_t count = 0;
+  require(inkwell_list_names(nullptr, 0, &count));
+  std::vector<inkwell_named_arm> list(count);
+  require(inkwell_list_names(list.data(), list.size(), &count));
+  if (count < list.size()) list.resize(count);  // a name was removed in between
+  return list;
+}
+
 /// See inkwell_wait_for_devices(). Returns false, and leaves the list unchanged, after the time-out.
 inline bool wait_for_devices(std::vector<inkwell_device>& known, double timeout_s) {
   std::size_t count = known.size();
