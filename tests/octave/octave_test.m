@@ -13,6 +13,21 @@ end
 
 % Errors contain the library's message.
 refused(@() inkwell_open('no such number'), 'no such number');
+
+% Names of arms.
+file = [tempname() '.toml'];
+setenv('INKWELL_ARMS', file);
+assert(isempty(inkwell_names()));
+handle = fopen(file, 'w');
+fputs(handle, "[[arm]]\nname = \"left\"\naddress = \"2A\"\n");
+fclose(handle);
+names = inkwell_names();
+assert(names(1).name, 'left');
+assert(names(1).address, '2A');
+refused(@() inkwell_open('lefft'), 'Did you mean left? Known names: left');
+refused(@() inkwell_open('Left'), 'The arm left is not plugged in');
+delete(file);
+setenv('INKWELL_ARMS', '');
 refused(@() inkwell_pose(7), 'not open');
 refused(@() inkwell_pose(0.5), 'not open');
 refused(@() inkwell_mex(), 'missing');
@@ -238,6 +253,23 @@ control(ports(2), ['{"command": "hand", "holds": true, "target_m": [0, 0, -0.03]
 control(ports(2), '{"command": "dock", "docked": false}');
 inkwell_sleep(held, 1);
 refused(@() identify_friction(held, picture), 'A hand holds the stylus');
+
+% The hand of a running board follows a path with its own damping, and the truth of the simulation is a structure.
+refused(@() inkwell_hand(held, [0 0 -0.03]), 'connect the control socket');
+refused(@() inkwell_connect_hand(held, '127.0.0.1:1'), '127.0.0.1:1');
+inkwell_connect_hand(held, sprintf('127.0.0.1:%d', ports(2)));
+inkwell_hand(held, [0 0 -0.03], 500, 12);
+inkwell_sleep(held, 0.5);
+truth = inkwell_truth(held);
+assert(truth.hand_holds);
+assert(truth.true_position_x_m, 0, 0.003);
+refused(@() inkwell_hand_path(held, [0 0 0]), 'rows [time_s x_m y_m z_m]');
+refused(@() inkwell_hand_path(held, {1, 2, 3, 4}), 'not a number');
+inkwell_hand_path(held, [0 0 0 -0.03; 0.3 0.02 0 -0.03]);
+inkwell_sleep(held, 0.6);
+truth = inkwell_truth(held);
+assert(truth.true_position_x_m, 0.02, 0.003);
+assert(inkwell_pose(held).position_m(1), truth.true_position_x_m, 0.003);
 inkwell_close(held);
 control(ports(2), '{"command": "quit"}');
 

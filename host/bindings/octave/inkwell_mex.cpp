@@ -281,6 +281,19 @@ Answers priority(const Arguments& arguments) {
   return {};
 }
 
+/// Returns a structure array with the name and the address of each named arm.
+Answers arm_names(const Arguments&) {
+  const auto names = inkwell::names();
+  const char* fields[] = {"name", "address"};
+  mxArray* table =
+      mxCreateStructMatrix(static_cast<mwSize>(names.size()), 1, static_cast<int>(std::size(fields)), fields);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    mxSetField(table, static_cast<mwIndex>(i), fields[0], mxCreateString(names[i].name));
+    mxSetField(table, static_cast<mwIndex>(i), fields[1], mxCreateString(names[i].address));
+  }
+  return {table};
+}
+
 mxArray* cell_of(const std::vector<inkwell_device>& devices) {
   mxArray* cell = mxCreateCellMatrix(static_cast<mwSize>(devices.size()), 1);
   for (std::size_t i = 0; i < devices.size(); ++i)
@@ -515,10 +528,44 @@ Answers hand(const Arguments& arguments) {
   inkwell_arm* arm = find(arguments)->second;
   if (arguments.size() < 2) {
     require(inkwell_release_virtual_hand(arm));
-  } else {
-    require(inkwell_move_virtual_hand(arm, vector(arguments[1]).data(), number(argument(arguments, 2))));
+    return {};
   }
+  const auto target_m = vector(arguments[1]);
+  const double stiffness_N_per_m = number(argument(arguments, 2));
+  require(arguments.size() < 4
+              ? inkwell_move_virtual_hand(arm, target_m.data(), stiffness_N_per_m)
+              : inkwell_hold_virtual_hand(arm, target_m.data(), stiffness_N_per_m, number(arguments[3])));
   return {};
+}
+
+Answers connect_hand(const Arguments& arguments) {
+  require(inkwell_connect_virtual_hand(find(arguments)->second, text(argument(arguments, 1)).c_str()));
+  return {};
+}
+
+/// The rows of the matrix are the points of the path: time and target.
+Answers hand_path(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  const mxArray* points = argument(arguments, 1);
+  if (mxGetN(points) != 4) throw Wrong("The path is not valid. Give a matrix with rows [time_s x_m y_m z_m].");
+  const auto values = numbers(points);  // column by column
+  const std::size_t count = mxGetM(points);
+  std::vector<inkwell_waypoint> path(count);
+  for (std::size_t i = 0; i < count; ++i)
+    path[i] = {values[i], {values[count + i], values[2 * count + i], values[3 * count + i]}};
+  require(inkwell_move_virtual_hand_along(arm, path.data(), path.size()));
+  return {};
+}
+
+Answers truth(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  std::vector<char> json(1);
+  std::size_t size = 0;
+  for (;;) {  // the length of a number can change between two calls
+    require(inkwell_read_virtual_truth(arm, json.data(), json.size(), &size));
+    if (size <= json.size()) return {mxCreateString(json.data())};
+    json.resize(size);
+  }
 }
 
 const std::map<std::string, Answers (*)(const Arguments&)> commands{
@@ -533,6 +580,7 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"claim", claim},
     {"priority", priority},
     {"devices", devices},
+    {"names", arm_names},
     {"version", version},
     {"sleep", sleep},
     {"enable", enable},
@@ -553,6 +601,9 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"signals", signals},
     {"read", read},
     {"hand", hand},
+    {"connect_hand", connect_hand},
+    {"hand_path", hand_path},
+    {"truth", truth},
     {"record", record},
     {"stop_recording", stop_recording},
     {"mark", mark},

@@ -2,7 +2,8 @@ function arm = inkwell_open(address, seed, timeout_s)
 % inkwell_open  Opens a haptic arm; its force is off.
 %
 %   arm = inkwell_open()           the address in INKWELL_DEVICE, otherwise the only arm on USB
-%   arm = inkwell_open(address)    a serial number, 'usbip:HOST:PORT', 'usbip:unix:PATH', or 'virtual' for a simulated arm
+%   arm = inkwell_open(address)    a serial number, a name such as 'left', 'usbip:HOST:PORT', 'usbip:unix:PATH', or
+%                                  'virtual' for a simulated arm
 %   arm = inkwell_open('virtual', seed)
 %     A simulated arm. Its time passes only while a function waits for the arm, such as inkwell_pose, inkwell_sleep or
 %     inkwell_capture. The same script with the same seed returns the same samples each time.
