@@ -15,22 +15,34 @@ namespace inkwell::window {
 
 namespace {
 
-/// Returns the scale of the main display, such as 2 for 192 dots per inch.
+/// Returns the scale that the desktop reports for the main display, such as 2 for 192 dots per inch.
 float monitor_scale() {
-  if (!has_pixel_units()) return 1.0f;
   float x = 1.0f;
   float y = 1.0f;
   if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) glfwGetMonitorContentScale(monitor, &x, &y);
-  return std::clamp(std::max(x, y), 1.0f, 4.0f);
+  return std::max(x, y);
 }
 
-/// Returns the usable area of the main display; empty if the desktop does not report the area.
+/// Returns the usable area of the main display in pixels; empty if the desktop does not report the area.
 std::optional<ScreenSize> monitor_room() {
   int x = 0, y = 0;
   ScreenSize room{0, 0};
   if (GLFWmonitor* monitor = glfwGetPrimaryMonitor())
     glfwGetMonitorWorkarea(monitor, &x, &y, &room.width, &room.height);
   return room.width > 0 && room.height > 0 ? std::optional(room) : std::nullopt;
+}
+
+/// Returns the scale of a new window on Wayland, such as 1.25. Wayland rounds the scale of a monitor up to a whole
+/// number, and reports the exact scale only to a window with contents.
+float window_scale(GLFWwindow* window) {
+  constexpr int waits = 5;
+  constexpr double wait_s = 0.02;
+  glClear(GL_COLOR_BUFFER_BIT);
+  glfwSwapBuffers(window);
+  for (int i = 0; i < waits; ++i) glfwWaitEventsTimeout(wait_s);
+  float x = 1.0f, y = 1.0f;
+  glfwGetWindowContentScale(window, &x, &y);
+  return std::max(x, y);
 }
 
 std::string last_glfw_error() {
@@ -55,9 +67,8 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
   glfwWindowHint(GLFW_STENCIL_BITS, 8);
   set_program_name("inkwell");
   const auto room = monitor_room();
-  scale_ = fitting_scale(scale > 0.0f ? scale : monitor_scale(), room);
-  const auto [width, height] = window_size(points, scale_, room);
-  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  auto fit = fit_window(points, display_scale(monitor_scale(), has_pixel_units()), scale, room);
+  window_ = glfwCreateWindow(fit.size.width, fit.size.height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_glfw_error();
     glfwTerminate();
@@ -65,9 +76,13 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
                        "). Install a driver for the graphics card. Without a graphics card, install libgl1-mesa-dri "
                        "and set LIBGL_ALWAYS_SOFTWARE=1.");
   }
-  const auto least = window_size(smallest_window_points, scale_, room);
-  glfwSetWindowSizeLimits(window_, least.width, least.height, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);
+  if (!has_pixel_units() && monitor_scale() > 1.0f) {
+    fit = fit_window(points, display_scale(window_scale(window_), false), scale, room);
+    glfwSetWindowSize(window_, fit.size.width, fit.size.height);
+  }
+  scale_ = fit.units_per_point;
+  glfwSetWindowSizeLimits(window_, fit.smallest.width, fit.smallest.height, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {

@@ -33,7 +33,7 @@ class Display {
   Display& operator=(const Display&) = delete;
 
   GLFWwindow* handle() const { return window_; }
-  float scale() const { return scale_; }  ///< pixels per point
+  float scale() const { return scale_; }  ///< screen units per point
   double refresh_rate_Hz() const;
   bool draws_in_software() const;  ///< OpenGL runs without a graphics card
   ImVec2 corner() const;           ///< top left corner of the drawing area on the screen; (0, 0) on Wayland

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
@@ -54,7 +55,15 @@ ImGuiFrames::Context::Context() {
 
 ImGuiFrames::Context::~Context() { ImGui::DestroyContext(); }
 
-ImGuiFrames::ImGuiFrames(GLFWwindow* window) : keys_(window) { ImGui_ImplOpenGL3_Init("#version 330 core"); }
+ImGuiFrames::ImGuiFrames(GLFWwindow* window) : keys_(window) {
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+  // The first fonts are loaded before the back end sets the pixels per screen unit in the first frame.
+  int units = 0, pixels = 0;
+  glfwGetWindowSize(window, &units, nullptr);
+  glfwGetFramebufferSize(window, &pixels, nullptr);
+  const float scale = units > 0 && pixels > 0 ? static_cast<float>(pixels) / static_cast<float>(units) : 1.0f;
+  ImGui::GetIO().DisplayFramebufferScale = {scale, scale};
+}
 
 ImGuiFrames::~ImGuiFrames() { ImGui_ImplOpenGL3_Shutdown(); }
 

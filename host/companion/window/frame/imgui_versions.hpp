@@ -30,6 +30,12 @@ inline ImGuiKey key_index(ImGuiKey key) { return key; }
 inline void allow_overlap_before_item() { ImGui::SetNextItemAllowOverlap(); }
 inline void allow_overlap_after_item() {}
 
+/// Scales the width of the ellipsis after a change of the font's measures.
+inline void scale_ellipsis(ImFont& font, float factor) {
+  font.EllipsisWidth *= factor;
+  font.EllipsisCharStep *= factor;
+}
+
 inline void set_lists(ImDrawData& data, const std::vector<ImDrawList*>& lists) {
   data.CmdLists.resize(static_cast<int>(lists.size()));
   for (std::size_t i = 0; i < lists.size(); ++i) data.CmdLists[static_cast<int>(i)] = lists[i];
@@ -54,6 +60,9 @@ inline int key_index(ImGuiKey key) { return ImGui::GetKeyIndex(key); }
 /// allow_overlap_after_item() after the item.
 inline void allow_overlap_before_item() { ImGui::SetItemAllowOverlap(); }
 inline void allow_overlap_after_item() { ImGui::SetItemAllowOverlap(); }
+
+/// This version measures the ellipsis when it draws the ellipsis.
+inline void scale_ellipsis(ImFont&, float) {}
 
 /// `lists` must outlive `data`.
 inline void set_lists(ImDrawData& data, std::vector<ImDrawList*>& lists) {

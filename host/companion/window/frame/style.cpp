@@ -12,6 +12,7 @@
 
 #include "host/companion/window/frame/font_search.hpp"
 #include "host/companion/window/frame/imgui_frames.hpp"
+#include "host/companion/window/frame/imgui_versions.hpp"
 
 namespace inkwell::window {
 
@@ -78,27 +79,50 @@ const FontFiles* main_font() {
   return found == font_files.end() ? nullptr : &*found;
 }
 
+/// Sizes of fonts, in screen units per point and pixels per screen unit.
+struct FontScale {
+  float units_per_point, pixels_per_unit;
+  float pixels(float points) const { return std::round(points * units_per_point * pixels_per_unit); }
+};
+
+float display_pixels_per_unit() { return ImGui::GetIO().DisplayFramebufferScale.x; }
+
+/// Converts the measures of a font from pixels to screen units. The texture is unchanged.
+void use_screen_units(ImFont* font, float pixels_per_unit) {
+  const float units = 1.0f / pixels_per_unit;
+  for (ImFontGlyph& glyph : font->Glyphs)
+    for (float* length : {&glyph.X0, &glyph.Y0, &glyph.X1, &glyph.Y1, &glyph.AdvanceX}) *length *= units;
+  for (float& advance : font->IndexAdvanceX) advance *= units;
+  for (float* length : {&font->FallbackAdvanceX, &font->FontSize, &font->Ascent, &font->Descent}) *length *= units;
+  scale_ellipsis(*font, units);
+}
+
 /// Fills an empty atlas.
-Fonts load_fonts(ImFontAtlas& atlas, float scale, const std::vector<MoreGlyphs>& more) {
+Fonts load_fonts(ImFontAtlas& atlas, const FontScale& scale, const std::vector<MoreGlyphs>& more) {
   atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
   atlas.FontBuilderFlags = ImGuiFreeTypeBuilderFlags_LightHinting;
   const FontFiles* files = main_font();
   if (files == nullptr) {
     ImFontConfig configuration;
-    configuration.SizePixels = std::round(13.0f * scale);
+    configuration.SizePixels = scale.pixels(13.0f);
     ImFont* only = atlas.AddFontDefault(&configuration);
     atlas.Build();
+    use_screen_units(only, scale.pixels_per_unit);
     return {only, only, only};
   }
-  const Fonts fonts{add_font(atlas, files->regular, std::round(15.0f * scale), more),
-                    add_font(atlas, files->strong, std::round(15.0f * scale), more),
-                    add_font(atlas, files->regular, std::round(12.5f * scale), more)};
+  const Fonts fonts{add_font(atlas, files->regular, scale.pixels(15.0f), more),
+                    add_font(atlas, files->strong, scale.pixels(15.0f), more),
+                    add_font(atlas, files->regular, scale.pixels(12.5f), more)};
   atlas.Build();
-  for (ImFont* font : {fonts.body, fonts.strong, fonts.caption}) make_digits_tabular(font);
+  for (ImFont* font : {fonts.body, fonts.strong, fonts.caption}) {
+    make_digits_tabular(font);
+    use_screen_units(font, scale.pixels_per_unit);
+  }
   return fonts;
 }
 
 std::vector<MoreGlyphs> glyphs_for(const std::vector<Character>& characters) {
+  if (characters.empty()) return {};
   std::vector<std::filesystem::path> files = installed_fonts(font_folders());
   if (const FontFiles* main = main_font()) files.insert(files.begin(), main->regular);
   std::vector<MoreGlyphs> more;
@@ -127,17 +151,19 @@ struct FontLoader::Next {
   }
 };
 
-FontLoader::FontLoader(float scale) : scale_(scale) {
+FontLoader::FontLoader(float scale) : scale_(scale), pixels_per_unit_(display_pixels_per_unit()) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
-  fonts_ = load_fonts(atlas, scale, {});
+  fonts_ = load_fonts(atlas, {scale_, pixels_per_unit_}, {});
 }
 
 FontLoader::~FontLoader() = default;
 
 bool FontLoader::update() {
   if (!next_) {
-    if (needed_count() == tried_count_) return false;
+    const bool is_same_display = display_pixels_per_unit() == pixels_per_unit_;
+    if (needed_count() == tried_count_ && is_same_display) return false;
+    pixels_per_unit_ = display_pixels_per_unit();
     tried_count_ = needed_count();
     std::vector<Character> needed = needed_characters();
     std::erase_if(needed, [](Character character) {
@@ -145,13 +171,14 @@ bool FontLoader::update() {
         if (character >= range[0] && character <= range[1]) return true;
       return false;
     });
-    if (needed.empty() || main_font() == nullptr) return false;
+    if (is_same_display && (needed.empty() || main_font() == nullptr)) return false;
     next_ = std::make_unique<Next>();
-    next_->thread = std::jthread([next = next_.get(), characters = std::move(needed), scale = scale_] {
-      next->more = glyphs_for(characters);
-      next->fonts = load_fonts(*next->atlas, scale, next->more);
-      next->is_ready = true;
-    });
+    next_->thread =
+        std::jthread([next = next_.get(), characters = std::move(needed), scale = FontScale{scale_, pixels_per_unit_}] {
+          next->more = glyphs_for(characters);
+          next->fonts = load_fonts(*next->atlas, scale, next->more);
+          next->is_ready = true;
+        });
     return false;
   }
   if (!next_->is_ready) return false;

@@ -21,13 +21,14 @@ struct Fonts {
 struct Style {
   const Palette* palette;
   Fonts fonts;
-  float scale;  ///< pixels per point
+  float scale;  ///< screen units per point
 
   float points(float count) const { return count * scale; }
 };
 
 /// Loads the first available font: Inter, DejaVu or ImGui's built-in font. Later adds the characters of displayed texts
-/// from all installed fonts, in a separate thread, so that no frame waits.
+/// from all installed fonts, in a separate thread, so that no frame waits. The pictures of the characters have the
+/// resolution of the display, also after the window was moved to another display.
 class FontLoader {
  public:
   explicit FontLoader(float scale);
@@ -36,7 +37,7 @@ class FontLoader {
   FontLoader& operator=(const FontLoader&) = delete;
 
   const Fonts& fonts() const { return fonts_; }
-  /// Call before ImGui::NewFrame(). Returns true if the fonts have changed.
+  /// Call before ImGui::NewFrame(). Returns true if the fonts have changed. Pixels per screen unit are those of ImGui.
   bool update();
   /// Returns true while a font atlas with more characters is being prepared.
   bool is_loading() const { return next_ != nullptr; }
@@ -46,6 +47,7 @@ class FontLoader {
  private:
   struct Next;
   float scale_;
+  float pixels_per_unit_;
   Fonts fonts_;
   std::size_t tried_count_ = 0;  ///< number of recorded characters at the last search
   std::unique_ptr<Next> next_;

@@ -67,7 +67,10 @@ void set_program_name(const char* name) {
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, name);
 }
 
-bool has_pixel_units() { return true; }
+bool has_pixel_units() {
+  // The package libglfw3-wayland replaces the X11 library at run time. Its version text begins with "3.3.8 Wayland".
+  return std::string_view(glfwGetVersionString()).find("Wayland") == std::string_view::npos;
+}
 
 #endif
 

@@ -1,5 +1,5 @@
-// Selects X11 or Wayland. GLFW before 3.4 (Debian 12) supports only X11. Only window_system.cpp depends on the GLFW
-// version.
+// Selects X11 or Wayland. GLFW before 3.4 (Debian 12) supports only X11, or only Wayland with the package
+// libglfw3-wayland. Only window_system.cpp depends on the GLFW version.
 #pragma once
 
 namespace inkwell::window {
