@@ -164,13 +164,17 @@ enum class Command : std::uint8_t {
   factory_reset = 10,    ///< erases the stored parameters and sets the defaults, where may_store()
 };
 
+/// Signals that the scope transmits in every control period. A selection of more signals is a bit mask.
 inline constexpr std::size_t scope_signals_maximum = 32;
+/// SignalSelection::count of a selection with a bit mask.
+inline constexpr std::uint8_t selected_by_mask = 0xFF;
 inline constexpr float test_duration_maximum_s = 0.1f;
 
 #pragma pack(push, 1)
 
 struct SignalSelection {
-  std::uint8_t count;  ///< 0..scope_signals_maximum
+  std::uint8_t count;  ///< 0..scope_signals_maximum, or selected_by_mask
+  /// Ids of the signals. With selected_by_mask, bit k of byte i selects the signal 8 * i + k.
   std::uint8_t signals[scope_signals_maximum];
 };
 

@@ -3,6 +3,7 @@
 #include "firmware/control/signal_path/installed_force_law.hpp"
 #include "firmware/placement/interrupt.hpp"
 #include "protocol/report_table.hpp"
+#include "protocol/scope.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -14,11 +15,13 @@ namespace {
 using protocol::Command;
 
 bool is_valid(const protocol::SignalSelection& selection) {
-  if (selection.count > protocol::scope_signals_maximum) return false;
+  const bool has_mask = selection.count == protocol::selected_by_mask;
+  if (selection.count > protocol::scope_signals_maximum && !has_mask) return false;
   const std::size_t signals = protocol::signal_count + control::installed_force_law.signal_count;
-  for (std::size_t i = 0; i < selection.count; ++i)
-    if (selection.signals[i] >= signals) return false;
-  return true;
+  const protocol::SelectedSignals selected = protocol::selected_signals(selection);
+  for (std::size_t i = 0; i < selected.count; ++i)
+    if (selected.items[i] >= signals) return false;
+  return selected.count != 0 || !has_mask;
 }
 
 bool is_valid(const protocol::TestPulse& test) {

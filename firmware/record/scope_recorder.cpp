@@ -32,6 +32,37 @@ template <class Value>
   return bits;
 }
 
+/// Writes a mask and the changed values. Returns the end of the written bytes.
+std::byte* write_changes_of(const ScopeGroup& group, const protocol::SignalValues& signals, std::uint32_t* previous,
+                            std::byte* const mask_position) {
+  std::byte* cursor = mask_position + sizeof(std::uint32_t);
+  std::uint32_t mask = 0;
+  std::uint32_t bit = 1;
+  const std::uint8_t* const items = group.items.data();
+  const std::uint8_t* const end = items + group.count;
+  const std::uint8_t* run = group.run_ends.data();
+  for (const std::uint8_t* item = items; item != end;) {
+    for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item, ++previous, bit <<= 1) {
+      const std::uint32_t bits = bits_of(signals.values[*item]);
+      if (bits == *previous) continue;
+      *previous = bits;
+      append(cursor, bits);
+      mask |= bit;
+    }
+    for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item, ++previous, bit <<= 1) {
+      const std::int16_t steps =
+          to_steps(signals.values[*item], group.steps_per_unit[static_cast<std::size_t>(item - items)]);
+      const auto bits = static_cast<std::uint32_t>(steps);
+      if (bits == *previous) continue;
+      *previous = bits;
+      append(cursor, steps);
+      mask |= bit;
+    }
+  }
+  std::memcpy(mask_position, &mask, sizeof mask);
+  return cursor;
+}
+
 }  // namespace
 
 ScopeRecorder::ScopeRecorder(const SampleRing& samples, ScopeFrames& frames)
@@ -44,7 +75,7 @@ void ScopeRecorder::select(const protocol::SignalSelection& selection, std::uint
   while (packed_ != samples_.recorded()) pack();
   if (sample_count_ != 0) finish_frame();
   plan_ = prepare(selection, token);
-  if (plan_.count == 0) return;
+  if (plan_.fast.count == 0) return;
   // The host does not expect samples of the previous selection.
   while (finished_count_ != 0) free_[free_count_++] = take_finished();
   sequence_ = 0;
@@ -53,7 +84,7 @@ void ScopeRecorder::select(const protocol::SignalSelection& selection, std::uint
 void ScopeRecorder::pack() {
   for (std::uint32_t i = 0; i < samples_per_pack; ++i) {
     const std::uint32_t recorded = samples_.recorded();
-    if (plan_.count == 0) packed_ = recorded;
+    if (plan_.fast.count == 0) packed_ = recorded;
     if (packed_ == recorded) return;
     if (recorded - packed_ > SampleRing::readable) skip_overwritten(recorded);
     pack_oldest();
@@ -96,53 +127,32 @@ void ScopeRecorder::pack_oldest() {
     finish_frame();
 }
 
-// Both write functions process the plan run by run. The loop over floats needs most of the recording time. The loop
-// over floats therefore has no branch for the encoding.
+// The write functions process a group of signals run by run. The loop over floats needs most of the recording time. The
+// loop over floats therefore has no branch for the encoding.
 
 void ScopeRecorder::write_full(const protocol::SignalValues& signals) {
   std::byte* cursor = cursor_;
-  const std::uint8_t* const items = plan_.items.data();
-  const std::uint8_t* const end = items + plan_.count;
-  const std::uint8_t* run = plan_.run_ends.data();
+  const ScopeGroup& group = plan_.fast;
+  const std::uint8_t* const items = group.items.data();
+  const std::uint8_t* const end = items + group.count;
+  const std::uint8_t* run = group.run_ends.data();
   for (const std::uint8_t* item = items; item != end;) {
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item)
       append(cursor, bits_of(signals.values[*item]));
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item)
-      append(cursor, to_steps(signals.values[*item], plan_.steps_per_unit[static_cast<std::size_t>(item - items)]));
+      append(cursor, to_steps(signals.values[*item], group.steps_per_unit[static_cast<std::size_t>(item - items)]));
   }
   cursor_ = cursor;
 }
 
 void ScopeRecorder::write_changes(const protocol::SignalValues& signals) {
-  std::byte* const mask_position = cursor_;
-  std::byte* cursor = mask_position + sizeof(std::uint32_t);
-  if (sample_count_ == 0) previous_.fill(bits_of_no_value);
-  std::uint32_t mask = 0;
-  std::uint32_t bit = 1;
-  std::uint32_t* previous = previous_.data();
-  const std::uint8_t* const items = plan_.items.data();
-  const std::uint8_t* const end = items + plan_.count;
-  const std::uint8_t* run = plan_.run_ends.data();
-  for (const std::uint8_t* item = items; item != end;) {
-    for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item, ++previous, bit <<= 1) {
-      const std::uint32_t bits = bits_of(signals.values[*item]);
-      if (bits == *previous) continue;
-      *previous = bits;
-      append(cursor, bits);
-      mask |= bit;
-    }
-    for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item, ++previous, bit <<= 1) {
-      const std::int16_t steps =
-          to_steps(signals.values[*item], plan_.steps_per_unit[static_cast<std::size_t>(item - items)]);
-      const auto bits = static_cast<std::uint32_t>(steps);
-      if (bits == *previous) continue;
-      *previous = bits;
-      append(cursor, steps);
-      mask |= bit;
-    }
+  if (sample_count_ == 0) {
+    previous_.fill(bits_of_no_value);
+    previous_slow_.fill(bits_of_no_value);
   }
-  std::memcpy(mask_position, &mask, sizeof mask);
-  cursor_ = cursor;
+  cursor_ = write_changes_of(plan_.fast, signals, previous_.data(), cursor_);
+  if (plan_.slow.count != 0 && sample_count_ % protocol::scope_slow_interval == 0)
+    cursor_ = write_changes_of(plan_.slow, signals, previous_slow_.data(), cursor_);
 }
 
 void ScopeRecorder::open_frame(std::uint8_t frame) {
@@ -161,7 +171,7 @@ void ScopeRecorder::finish_frame() {
   header.length = static_cast<std::uint16_t>(cursor_ - start);
   header.sample_count = static_cast<std::uint16_t>(sample_count_);
   header.encoding = plan_.encoding;
-  header.signal_count = static_cast<std::uint8_t>(plan_.count);
+  header.signal_count = static_cast<std::uint8_t>(plan_.fast.count + plan_.slow.count);
   header.selection_token = plan_.token;
   std::memcpy(start, &header, sizeof header);
 

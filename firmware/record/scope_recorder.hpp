@@ -76,7 +76,8 @@ class ScopeRecorder {
   std::uint32_t first_period_ = 0;
   std::uint32_t sequence_ = 0;
   std::uint32_t samples_dropped_ = 0;
-  std::array<std::uint32_t, protocol::scope_signals_maximum> previous_{};  ///< last written bits of each signal
+  /// Last written bits of each signal.
+  std::array<std::uint32_t, protocol::scope_signals_maximum> previous_{}, previous_slow_{};
 };
 
 }  // namespace inkwell::link

@@ -376,7 +376,9 @@ TEST_CASE("the scope returns every control period, and a recording contains all 
   CHECK(inkwell_select_signals(virtual_arm.arm, wrong, 1) == INKWELL_BAD_ARGUMENT);
   const std::vector<const char*> many(33, "supply_V");
   CHECK(inkwell_select_signals(virtual_arm.arm, many.data(), many.size()) == INKWELL_BAD_ARGUMENT);
-  CHECK(says("33 signals are too many. Give at most 32."));
+  CHECK(says("contain a signal twice. Give each signal once, or at most 32 signals."));
+  const std::vector<const char*> too_many(65, "supply_V");
+  CHECK(inkwell_select_signals(virtual_arm.arm, too_many.data(), too_many.size()) == INKWELL_BAD_ARGUMENT);
   const char* names[]{"position_z_m", "supply_V"};
   REQUIRE_MESSAGE(inkwell_select_signals(virtual_arm.arm, names, 2) == INKWELL_OK, std::string(inkwell_error_text()));
   std::uint32_t next = 0;

@@ -453,6 +453,18 @@ class Programs(unittest.TestCase):
             with self.assertRaisesRegex(inkwell.InUse, "scope is in use"):
                 second.capture("supply_V", duration_s=0.05)
 
+    def test_all_signals_in_any_order(self):
+        names = [signal.name for signal in reversed(inkwell.signals())]
+        with inkwell.open("virtual", seed=7) as arm:
+            samples = arm.capture(*names, duration_s=0.2)
+            self.assertEqual((samples.values.shape, samples.lost), ((4000, len(names)), 0))
+            self.assertAlmostEqual(samples["supply_V"].mean(), 18, delta=1)
+            # The first 32 signals of the table are sent in each period, the others in each 16th.
+            self.assertGreater(np.count_nonzero(np.diff(samples["current_1_A"])), 2000)
+            self.assertLess(np.count_nonzero(np.diff(samples["servo_cycles"])), 400)
+            with self.assertRaisesRegex(inkwell.BadArgument, "contain a signal twice"):
+                arm.select_signals(*["supply_V"] * 33)
+
     def test_samples_that_stop_midway_are_no_capture(self):
         with VirtualBoard(BUILD) as board, inkwell.open(board.address) as arm:
             arm.select_signals("supply_V")

@@ -166,9 +166,14 @@ const inkwell_signal* inkwell_signal_at(size_t index) {
 inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* const* names, size_t count) {
   return guarded([&] {
     if (count > 0) required(names, "The list of names");
-    require_at_most(protocol::scope_signals_maximum, count, "signals");
+    require_at_most(protocol::scope_wide_maximum, count, "signals");
     std::vector<protocol::Signal> signals;
     for (std::size_t i = 0; i < count; ++i) signals.push_back(signal_named(names[i]));
+    try {
+      device::check_selection(signals);
+    } catch (const device::Error& error) {
+      throw BadArgument(error.what());
+    }
     arm_of(arm).scope().select(signals);
   });
 }

@@ -666,14 +666,11 @@ std::uint8_t Device::send(Command command, const protocol::TestPulse& pulse) {
 }
 
 std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
-  if (signals.size() > protocol::scope_signals_maximum)
-    throw Error(fmt::format("The scope cannot transmit {} signals. Choose at most {}.", signals.size(),
-                            protocol::scope_signals_maximum));
+  check_selection(signals);
   if (!signals.empty()) implementation_->transport()->claim_scope();
   protocol::CommandReport report{};
   report.command = Command::select_signals;
-  report.selection.count = static_cast<std::uint8_t>(signals.size());
-  for (std::size_t i = 0; i < signals.size(); ++i) report.selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
+  report.selection = selection_of(signals);
   const auto token = implementation_->send(report, [&] {
     const std::lock_guard lock(implementation_->scope_mutex);
     implementation_->decoder.pass_time(static_cast<std::uint32_t>(implementation_->time_periods.newest()));

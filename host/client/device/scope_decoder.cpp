@@ -1,7 +1,13 @@
 #include "host/client/device/scope_decoder.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "host/client/device/error.hpp"
 
 namespace inkwell::device {
 namespace {
@@ -51,16 +57,27 @@ void read_full(Reader& reader, ScopeSamples& samples) {
     for (auto signal : samples.signals) samples.values.push_back(reader.take_signal(info(signal).wire));
 }
 
-/// Returns false if a mask contains unselected signals, or if the first mask does not contain all selected signals.
-bool read_changes(Reader& reader, ScopeSamples& samples) {
-  const std::size_t signal_count = samples.signals.size();
-  const std::uint32_t every_signal = static_cast<std::uint32_t>((std::uint64_t{1} << signal_count) - 1);
-  std::vector<float> sample(signal_count);
+/// Reads a mask and the changed values of the signals in these columns. Returns false if the mask contains unselected
+/// signals, or if the first mask does not contain all selected signals.
+bool read_changes_of(Reader& reader, std::span<const std::size_t> columns, bool is_first,
+                     std::span<const protocol::Signal> signals, std::vector<float>& sample) {
+  const std::uint32_t every_signal = static_cast<std::uint32_t>((std::uint64_t{1} << columns.size()) - 1);
+  const auto mask = reader.take<std::uint32_t>();
+  if ((mask & ~every_signal) != 0 || (is_first && mask != every_signal)) return false;
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    if (mask >> j & 1u) sample[columns[j]] = reader.take_signal(info(signals[columns[j]]).wire);
+  return true;
+}
+
+/// Returns false if a mask is wrong.
+bool read_changes(Reader& reader, std::span<const std::size_t> columns, ScopeSamples& samples) {
+  const auto fast = columns.first(std::min(columns.size(), protocol::scope_signals_maximum));
+  const auto slow = columns.subspan(fast.size());
+  std::vector<float> sample(columns.size());
   for (std::size_t i = 0; i < samples.count && reader.ok(); ++i) {
-    const auto mask = reader.take<std::uint32_t>();
-    if ((mask & ~every_signal) != 0 || (i == 0 && mask != every_signal)) return false;
-    for (std::size_t j = 0; j < signal_count; ++j)
-      if (mask >> j & 1u) sample[j] = reader.take_signal(info(samples.signals[j]).wire);
+    if (!read_changes_of(reader, fast, i == 0, samples.signals, sample)) return false;
+    const bool has_slow = !slow.empty() && i % protocol::scope_slow_interval == 0;
+    if (has_slow && !read_changes_of(reader, slow, i == 0, samples.signals, sample)) return false;
     samples.values.insert(samples.values.end(), sample.begin(), sample.end());
   }
   return true;
@@ -68,13 +85,41 @@ bool read_changes(Reader& reader, ScopeSamples& samples) {
 
 }  // namespace
 
+void check_selection(std::span<const protocol::Signal> signals) {
+  if (signals.size() <= protocol::scope_signals_maximum) return;
+  std::vector<protocol::Signal> sorted(signals.begin(), signals.end());
+  std::ranges::sort(sorted);
+  if (std::ranges::adjacent_find(sorted) != sorted.end())
+    throw Error(fmt::format(
+        "The scope cannot transmit {} signals that contain a signal twice. Give each signal once, or at most "
+        "{} signals.",
+        signals.size(), protocol::scope_signals_maximum));
+}
+
+protocol::SignalSelection selection_of(std::span<const protocol::Signal> signals) {
+  protocol::SignalSelection selection{};
+  const bool has_mask = signals.size() > protocol::scope_signals_maximum;
+  selection.count = has_mask ? protocol::selected_by_mask : static_cast<std::uint8_t>(signals.size());
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const auto id = static_cast<std::uint8_t>(signals[i]);
+    if (has_mask)
+      selection.signals[id / 8] = static_cast<std::uint8_t>(selection.signals[id / 8] | 1u << id % 8);
+    else
+      selection.signals[i] = id;
+  }
+  return selection;
+}
+
 void ScopeDecoder::expect(std::uint8_t token, std::vector<protocol::Signal> signals) {
   token_ = token;
   if (signals_.empty()) may_begin_with_rest_ = true;
   signals_ = std::move(signals);
-  selection_ = {};
-  selection_.count = static_cast<std::uint8_t>(signals_.size());
-  for (std::size_t i = 0; i < signals_.size(); ++i) selection_.signals[i] = static_cast<std::uint8_t>(signals_[i]);
+  selection_ = selection_of(signals_);
+  columns_.resize(signals_.size());
+  std::iota(columns_.begin(), columns_.end(), std::size_t{0});
+  // A bit mask selects the signals in the order of the table.
+  if (selection_.count == protocol::selected_by_mask)
+    std::ranges::sort(columns_, {}, [&](std::size_t column) { return signals_[column]; });
   next_period_.reset();
 }
 
@@ -120,7 +165,7 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> scop
   Reader reader(scope_frame.subspan(sizeof header));
   if (header.encoding == protocol::ScopeEncoding::full)
     read_full(reader, samples);
-  else if (!read_changes(reader, samples))
+  else if (!read_changes(reader, columns_, samples))
     return refuse();
   if (!reader.ok() || !reader.at_end()) return refuse();
 

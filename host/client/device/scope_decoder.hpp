@@ -22,9 +22,17 @@ struct ScopeSamples {
   std::uint64_t lost_before = 0;  ///< number of control periods without samples since the previous samples
 };
 
+/// Throws Error if the scope cannot transmit these signals: a signal twice among more than scope_signals_maximum
+/// signals.
+void check_selection(std::span<const protocol::Signal> signals);
+/// Returns the selection for a command: a list, or a bit mask for more than scope_signals_maximum signals.
+protocol::SignalSelection selection_of(std::span<const protocol::Signal> signals);
+
 class ScopeDecoder {
  public:
-  /// Sets the signals that the command with this token selects, at most scope_signals_maximum.
+  /// Sets the signals that the command with this token selects, at most scope_wide_maximum. More than
+  /// scope_signals_maximum signals must differ. The samples contain the signals in this order. The signals after the
+  /// 32nd in the order of the table keep their value for up to scope_slow_interval samples.
   void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
 
   /// Rejects all samples from control periods before `period`, because they belong to an earlier program.
@@ -52,6 +60,7 @@ class ScopeDecoder {
   std::uint64_t lost_before(const protocol::ScopeFrameHeader& header) const;
 
   std::vector<protocol::Signal> signals_;
+  std::vector<std::size_t> columns_;  ///< index in signals_ of each transmitted signal
   protocol::SignalSelection selection_{};
   std::optional<std::uint8_t> token_;
   std::optional<std::uint32_t> next_period_;

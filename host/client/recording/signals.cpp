@@ -6,7 +6,6 @@
 
 #include "host/client/device/error.hpp"
 #include "host/client/device/nearest_name.hpp"
-#include "protocol/reports.hpp"
 
 namespace inkwell::recording {
 namespace {
@@ -50,6 +49,12 @@ std::vector<Signal> signal_path() {
   return signals;
 }
 
+std::vector<Signal> all_signals() {
+  std::vector<Signal> signals;
+  for (const auto& row : protocol::known_signals()) signals.push_back(static_cast<Signal>(row.id));
+  return signals;
+}
+
 std::vector<Signal> parse_signals(std::string_view names) {
   std::vector<Signal> signals;
   for (const auto name : split(names)) {
@@ -59,9 +64,6 @@ std::vector<Signal> parse_signals(std::string_view names) {
                                             device::suggestion(protocol::known_signals(), name)));
     add_once(signals, *signal);
   }
-  if (signals.size() > protocol::scope_signals_maximum)
-    throw device::Error(fmt::format("{} signals are given, but the scope can transmit only {}. Give fewer signals.",
-                                    signals.size(), protocol::scope_signals_maximum));
   return signals;
 }
 

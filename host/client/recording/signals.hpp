@@ -14,12 +14,13 @@ namespace inkwell::recording {
 /// force source.
 std::vector<protocol::Signal> standard_signals();
 
-/// The complete path of the paper's Figure 7, from the encoders to the duties. This set fills the capacity of the
-/// scope.
+/// The complete path of the paper's Figure 7, from the encoders to the duties.
 std::vector<protocol::Signal> signal_path();
 
-/// Parses comma-separated names. For an unknown name, throws device::Error with the nearest signal. Throws
-/// device::Error if there are more signals than the scope can transmit.
+/// All signals of the table and of the known force law.
+std::vector<protocol::Signal> all_signals();
+
+/// Parses comma-separated names. For an unknown name, throws device::Error with the nearest signal.
 std::vector<protocol::Signal> parse_signals(std::string_view names);
 
 /// Parses comma-separated names of signals and simulated quantities. For an unknown name, throws device::Error with the

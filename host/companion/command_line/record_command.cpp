@@ -99,11 +99,7 @@ class RecordingThread {
 };
 
 std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
-  if (options.all) {
-    auto signals = recording::signal_path();
-    signals.push_back(protocol::Signal::supply_V);  // the scope transmits no more signals
-    return signals;
-  }
+  if (options.all) return recording::all_signals();
   if (options.signals.empty()) return recording::standard_signals();
   return recording::parse_signals(options.signals);
 }
@@ -217,6 +213,7 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
       BoardPace::real_time);
   const auto connection = early ? std::move(*early) : connect(device_options, BoardPace::real_time);
   auto& device = *connection.device;
+  if (options.all) signals = chosen_signals(options);  // now with the signals of the board's force law
   const auto information = recording::describe(
       device.information(), device.parameters(), signals, connection.arm_name, connection.endpoint.is_virtual,
       {options.name, options.note, connection.image, connection.arm_description});
@@ -271,7 +268,7 @@ void add_record_command(const CommandContext& context) {
           ->type_name("NAMES");
   command
       ->add_flag("--all", record_options->all,
-                 "All signals from the encoders to the duty cycles, and supply_V; not with --signals")
+                 "All signals; those after the 32nd of `inkwell signals` at 1250 Hz; not with --signals")
       ->excludes(signals);
   command->add_option("--seconds", record_options->seconds, "Stop after this board time")
       ->type_name("SECONDS")

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -66,7 +67,14 @@ TEST_CASE("a selection contains only known signals, up to the maximum number") {
   CHECK(is_accepted(report));  // entries after `count` are not checked
   report.selection.count = protocol::scope_signals_maximum + 1;
   CHECK_FALSE(is_accepted(report));
-  report.selection.count = 255;
+  report.selection.count = 254;
+  CHECK_FALSE(is_accepted(report));
+  report.selection.count = protocol::selected_by_mask;
+  std::ranges::fill(report.selection.signals, std::uint8_t{0});
+  CHECK_FALSE(is_accepted(report));  // an empty mask
+  report.selection.signals[(protocol::signal_count - 1) / 8] = 1u << (protocol::signal_count - 1) % 8;
+  CHECK(is_accepted(report));
+  report.selection.signals[protocol::signal_count / 8] |= 1u << protocol::signal_count % 8;
   CHECK_FALSE(is_accepted(report));
 }
 

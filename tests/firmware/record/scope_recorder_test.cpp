@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -40,18 +41,23 @@ ScopeFrameHeader decode(std::span<const std::byte> frame, const SignalSelection&
   const auto header = read<ScopeFrameHeader>(frame);
   CHECK(header.magic == protocol::scope_magic);
   CHECK(header.length == size);
-  CHECK(header.signal_count == selection.count);
-  std::vector<float> values(selection.count);
-  for (std::uint32_t i = 0; i < header.sample_count; ++i) {
-    std::uint32_t mask = 0xFFFF'FFFFu >> (32 - selection.count);
+  const protocol::SelectedSignals selected = protocol::selected_signals(selection);
+  CHECK(header.signal_count == selected.count);
+  std::vector<float> values(selected.count);
+  const auto read_group = [&](std::size_t begin, std::size_t end, bool is_first) {
+    std::uint32_t mask = 0xFFFF'FFFFu >> (32 - (end - begin));
     if (header.encoding == ScopeEncoding::changes) {
       const std::uint32_t all = mask;
       mask = read<std::uint32_t>(frame);
       CHECK((mask & ~all) == 0);
-      if (i == 0) CHECK(mask == all);
+      if (is_first) CHECK(mask == all);
     }
-    for (std::size_t k = 0; k < selection.count; ++k)
-      if (mask >> k & 1u) values[k] = read_value(frame, static_cast<Signal>(selection.signals[k]));
+    for (std::size_t k = begin; k < end; ++k)
+      if (mask >> (k - begin) & 1u) values[k] = read_value(frame, static_cast<Signal>(selected.items[k]));
+  };
+  for (std::uint32_t i = 0; i < header.sample_count; ++i) {
+    read_group(0, std::min<std::size_t>(selected.count, 32), i == 0);
+    if (selected.count > 32 && i % 16 == 0) read_group(32, selected.count, i == 0);
     sample(header.first_period + i, values);
   }
   CHECK(frame.empty());
@@ -157,6 +163,38 @@ TEST_CASE("a selection of 32 alternating wide and narrow signals can be decoded,
       selection.signals[i] = static_cast<std::uint8_t>(i % 2 == narrow_remainder ? 25 + i / 2 % 6 : i / 2);
     check_round_trip(selection, ScopeEncoding::changes, 200);
   }
+}
+
+TEST_CASE("all signals: the first 32 are sent in each period, and the others in each 16th sample of a frame") {
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
+  SignalSelection selection{.count = protocol::selected_by_mask, .signals = {}};
+  for (std::size_t i = 0; i < protocol::signal_count; ++i)
+    selection.signals[i / 8] = static_cast<std::uint8_t>(selection.signals[i / 8] | 1u << i % 8);
+  scope.select(selection, 9);
+  constexpr std::uint32_t periods = 400;
+  for (std::uint32_t period = 0; period < periods; ++period) test::record(fresh, signals_at(period), period);
+  scope.select({}, 10);
+  test::record(fresh, {}, periods);
+  std::uint32_t next = 0;
+  int wrong = 0;
+  for (auto frame = scope.oldest_frame(); !frame.empty(); frame = scope.oldest_frame()) {
+    const std::uint32_t first = next;
+    decode(frame, selection, [&](std::uint32_t period, const std::vector<float>& values) {
+      REQUIRE(values.size() == protocol::signal_count);
+      wrong += period != next++;
+      const SignalValues now = signals_at(period), slow = signals_at(period - (period - first) % 16);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const auto signal = static_cast<Signal>(k);
+        const float difference = values[k] - (k < 32 ? now : slow)[signal];
+        wrong += !(difference <= resolution(signal) && difference >= -resolution(signal));
+      }
+    });
+    scope.release();
+  }
+  CHECK(wrong == 0);
+  CHECK(next == periods);
+  CHECK(link::prepare(selection, 0).encoding == protocol::encoding_for(selection));
 }
 
 TEST_CASE("a single signal") { check_round_trip(select(1, 26), ScopeEncoding::full, 3000); }

@@ -388,7 +388,7 @@ class Arm:
 
     def select_signals(self, *names: str) -> None:
         """Starts to stream these signals at every control period; inkwell.signals() lists them. Without names it stops the
-        stream."""
+        stream. Of more than 32 signals, those after the 32nd in the order of the list are updated at 1250 Hz."""
         _call(self._native.select_signals, names, wants="signal names as text; inkwell.signals() lists them")
         self._signals = names
 

@@ -150,6 +150,51 @@ TEST_CASE("missing first frames of a selection count as a loss") {
   CHECK(samples->lost_before == 3);
 }
 
+TEST_CASE(
+    "more than 32 signals: the later ones of the table arrive in each 16th sample, in any order of the selection") {
+  constexpr std::size_t count = 40;
+  std::vector<Signal> signals;
+  for (std::size_t i = 0; i < count; ++i) signals.push_back(static_cast<Signal>(count - 1 - i));
+  device::ScopeDecoder decoder;
+  decoder.expect(token, signals);
+  const auto value_of = [](std::uint32_t sample, std::size_t id) { return static_cast<float>(1000 * sample + id); };
+  const auto build = [&](std::uint32_t first_mask, std::uint32_t last_mask) {
+    FrameBuilder builder(token, count, protocol::ScopeEncoding::changes);
+    for (std::uint32_t sample = 0; sample < 18; ++sample) {
+      const auto put = [&](std::size_t id) {
+        if (protocol::info(static_cast<Signal>(id)).wire == protocol::SignalWire::float32)
+          builder.put(value_of(sample, id));
+        else
+          builder.put(std::int16_t{0});
+      };
+      builder.put(sample == 0 ? 0xFFFF'FFFFu : 1u);
+      for (std::size_t id = 0; id < (sample == 0 ? 32u : 1u); ++id) put(id);
+      if (sample % 16 != 0) continue;
+      builder.put(sample == 0 ? first_mask : last_mask);
+      for (std::size_t id = 32; id < count; ++id)
+        if ((sample == 0 ? first_mask : last_mask) >> (id - 32) & 1u) put(id);
+    }
+    return builder.build(0, 100, 18);
+  };
+  const auto samples = decoder.decode(build(0xFF, 0x80));
+  REQUIRE(samples);
+  REQUIRE(samples->values.size() == 18 * count);
+  const auto value = [&](std::uint32_t sample, std::size_t id) {
+    return samples->values[sample * count + count - 1 - id];
+  };
+  CHECK(value(0, 39) == value_of(0, 39));
+  CHECK(value(0, 32) == value_of(0, 32));
+  CHECK(value(15, 39) == value_of(0, 39));
+  CHECK(value(16, 39) == value_of(16, 39));
+  CHECK(value(17, 39) == value_of(16, 39));
+  CHECK(value(17, 38) == value_of(0, 38));
+  CHECK(value(17, 0) == value_of(17, 0));
+  CHECK(value(17, 1) == value_of(0, 1));
+  CHECK_FALSE(decoder.decode(build(0x7F, 0x80)));   // the first sample has each value
+  CHECK_FALSE(decoder.decode(build(0xFF, 0x100)));  // an unselected signal
+  CHECK(decoder.malformed_frames() == 2);
+}
+
 TEST_CASE("frames of another selection are left out without being an error") {
   auto decoder = decoder_for(few);
   decoder.expect(8, few);

@@ -120,7 +120,8 @@ TEST_CASE("more signals than the scope carries are refused before anything is se
   std::vector<protocol::Signal> signals(protocol::scope_signals_maximum, protocol::Signal::force_N);
   arm->select_signals(signals);
   signals.push_back(protocol::Signal::force_N);
-  CHECK(contains(message_of<device::Error>([&] { arm->select_signals(signals); }), "cannot transmit 33 signals"));
+  CHECK(contains(message_of<device::Error>([&] { arm->select_signals(signals); }),
+                 "cannot transmit 33 signals that contain a signal twice"));
   arm->send(protocol::Command::heartbeat);
   CHECK(eventually([&] { return server.commands().size() == 2; }));
 }

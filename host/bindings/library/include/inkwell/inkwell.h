@@ -566,7 +566,8 @@ INKWELL_API size_t inkwell_signal_count(void);
 INKWELL_API const inkwell_signal* inkwell_signal_at(size_t index);
 
 /* Starts to stream these signals at every control period; with no signals it stops the stream. Only one program can use
- * the scope, from its first selection until it selects no signals. */
+ * the scope, from its first selection until it selects no signals. Of more than 32 signals, those after the 32nd in the
+ * order of the table are updated at 1250 Hz, and each signal must be given once. */
 INKWELL_API inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* const* names, size_t count);
 
 /* Waits for samples, then writes at most `capacity` rows to `values`, with one value per selected signal in each row.
