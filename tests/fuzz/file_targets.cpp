@@ -1,6 +1,8 @@
 // Fuzz targets for the companion's input files: recordings, window settings, and campaign results.
 #include <cstring>
+#include <memory>
 #include <sstream>
+#include <utility>
 
 #include "host/client/device/error.hpp"
 #include "host/client/firmware_update/boot_loader.hpp"
@@ -36,13 +38,14 @@ const Registered recording_csv{"recording_csv", [](Input input) {
                                  constexpr std::string_view key = "# force_law = ";
                                  for (auto at = text.find(key); at != text.npos; at = text.find(key, at + 1))
                                    if (++laws > laws_maximum) text[at + 2] = 'F';
-                                 std::istringstream stream(text);
+                                 auto stream = std::make_unique<std::istringstream>(text);
                                  refuse_or_take<device::Error>([&] {
-                                   const auto recording = recording::read_csv(stream, "recording.csv");
+                                   const auto stored = recording::open_csv(std::move(stream), "recording.csv");
+                                   const auto recording = stored.load(stored.quantities());
                                    for (const auto quantity : recording.quantities())
                                      if (recording.column(quantity).size() != recording.size())
                                        throw std::logic_error("a column is too short");
-                                   recording::log_text(recording);
+                                   recording::log_text(stored);
                                    recording.lost();
                                    const std::size_t end = recording.size();
                                    for (std::size_t begin = 0; begin < end;) {

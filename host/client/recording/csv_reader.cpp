@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <istream>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,31 +43,94 @@ std::optional<std::int64_t> period_at(double time_s) {
   return can_be_period(period) ? std::optional(period) : std::nullopt;
 }
 
-class CsvReader {
+/// Complete lines of a stream. Long files need only a small buffer.
+class Lines {
  public:
-  CsvReader(std::istream& stream, const std::string& name) : name_(name), stream_(stream) {
+  explicit Lines(std::istream& stream) : stream_(stream), buffer_(buffer_bytes, '\0') {}
+
+  void go_to(std::uint64_t offset) {
+    stream_.clear();  // clears the end-of-file state
+    stream_.seekg(static_cast<std::streamoff>(offset));
+    offset_ = offset;
+    begin_ = end_ = 0;
+  }
+  /// Returns the next line without its end. The line is valid until the next call. Returns std::nullopt after the last
+  /// complete line: if the recording program was killed, the last line may be incomplete.
+  std::optional<std::string_view> next() {
+    for (std::size_t searched = 0;;) {
+      const std::string_view rest(buffer_.data() + begin_, end_ - begin_);
+      if (const auto length = rest.find('\n', searched); length != rest.npos) {
+        begin_ += length + 1;
+        offset_ += length + 1;
+        return local::without_carriage_return(rest.substr(0, length));
+      }
+      searched = rest.size();
+      if (!read_more()) return std::nullopt;
+    }
+  }
+  /// Position of the next line in the stream.
+  std::uint64_t offset() const { return offset_; }
+  bool is_too_long() const { return is_too_long_; }
+
+ private:
+  static constexpr std::size_t buffer_bytes = 1 << 18, line_bytes_maximum = 1 << 24;
+
+  bool read_more() {
+    buffer_.erase(0, begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    is_too_long_ = end_ > line_bytes_maximum;
+    if (is_too_long_) return false;
+    buffer_.resize(std::max(buffer_bytes, 2 * end_));
+    stream_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
+    const auto count = static_cast<std::size_t>(stream_.gcount());
+    end_ += count;
+    return count > 0;
+  }
+
+  std::istream& stream_;
+  std::string buffer_;
+  std::size_t begin_ = 0, end_ = 0;  ///< bytes of the buffer that are not returned yet
+  std::uint64_t offset_ = 0;
+  bool is_too_long_ = false;
+};
+
+class CsvReader final : public ColumnReader {
+ public:
+  CsvReader(std::unique_ptr<std::istream> stream, std::string name)
+      : name_(std::move(name)), stream_(std::move(stream)), lines_(*stream_) {
     recording_.complete = false;
   }
 
-  Recording read() {
-    std::string text;
-    while (std::getline(stream_, text)) {
+  /// Reads everything except the samples, and the position of each block of samples.
+  Recording read_head() {
+    for (std::uint64_t offset = 0; const auto next = lines_.next(); offset = lines_.offset()) {
       ++line_number_;
-      // If the program was killed, the last line may be incomplete. An incomplete line is ignored.
-      if (stream_.eof()) break;
-      std::string_view line = local::without_carriage_return(text);
-      if (line_number_ == 1) line = local::without_byte_order_mark(line);
+      const std::string_view line = line_number_ == 1 ? local::without_byte_order_mark(*next) : *next;
       if (line.empty()) continue;
       if (line.starts_with("# "))
         comment(line.substr(2));
       else if (!columns_known_)
         column_names(line);
       else
-        sample(line);
+        index_sample(line, offset);
     }
+    if (lines_.is_too_long()) fail(fmt::format("is damaged in line {}: the line is too long", line_number_ + 1));
     if (!is_recording_) fail(fmt::format("does not start with \"# {}\", so it is not a recording", format_name));
     if (!columns_known_) fail("has no line of column names");
     return std::move(recording_);
+  }
+  const Stretches& stretches() const { return stretches_; }
+
+  void read(std::size_t column, std::size_t begin, std::span<float> values) override {
+    for (std::size_t done = 0; done < values.size();) {
+      const std::size_t block = (begin + done) / block_samples, first = (begin + done) % block_samples;
+      if (block != read_block_) read_block(block);
+      const auto& samples = block_columns_[column];
+      const std::size_t count = std::min(samples.size() - first, values.size() - done);
+      std::copy_n(samples.begin() + static_cast<std::ptrdiff_t>(first), count, values.subspan(done).begin());
+      done += count;
+    }
   }
 
  private:
@@ -161,26 +227,48 @@ class CsvReader {
       }
       line.remove_prefix(name.size());
     }
-    recording_.columns.resize(recording_.information.signals.size());
-    recording_.simulated_columns.resize(recording_.information.simulated.size());
+    width_ = recording_.information.signals.size() + recording_.information.simulated.size();
+    signals_ = recording_.information.signals.size();
   }
-  void sample(std::string_view line) {
-    const auto next = [&]() -> double {
-      const auto cell = line.substr(0, line.find(','));
-      const auto value = number(cell);
-      if (!value) fail(fmt::format("is damaged in line {}: \"{}\" is not a number", line_number_, cell));
-      line.remove_prefix(std::min(line.size(), cell.size() + 1));
-      return *value;
-    };
-    const double time_s = next();
+  /// Returns the next number of a line.
+  double next_cell(std::string_view& line) const {
+    const auto cell = line.substr(0, line.find(','));
+    const auto value = number(cell);
+    if (!value) fail(fmt::format("is damaged in line {}: \"{}\" is not a number", line_number_, cell));
+    line.remove_prefix(std::min(line.size(), cell.size() + 1));
+    return *value;
+  }
+  /// Reads only the time, because reading all values takes long.
+  void index_sample(std::string_view line, std::uint64_t offset) {
+    const double time_s = next_cell(line);
     const auto period = period_at(time_s);
     if (!period) fail(fmt::format("is damaged in line {}: {} s is not a valid board time", line_number_, time_s));
-    recording_.periods.push_back(recording_.size() == 0 ? *period : period_after(recording_.periods.back(), *period));
-    auto column = recording_.columns.begin(), simulated_column = recording_.simulated_columns.begin();
+    if (stretches_.size() % block_samples == 0) blocks_.push_back({offset, line_number_});
+    stretches_.append(stretches_.size() == 0 ? *period : period_after(stretches_.last_period(), *period), 1);
+  }
+  void read_block(std::size_t block) {
+    read_block_ = no_block;  // remains if the block is damaged
+    block_columns_.assign(width_, {});
+    if (lines_.offset() != blocks_[block].offset) lines_.go_to(blocks_[block].offset);
+    line_number_ = blocks_[block].line_number - 1;
+    const std::size_t count = std::min(block_samples, stretches_.size() - block * block_samples);
+    for (std::size_t i = 0; i < count;) {
+      ++line_number_;
+      const auto line = lines_.next();
+      if (!line) fail("has changed since it was opened");
+      if (line->empty() || line->starts_with("# ")) continue;
+      read_sample(*line);
+      ++i;
+    }
+    read_block_ = block;
+  }
+  void read_sample(std::string_view line) {
+    next_cell(line);
+    std::size_t signal = 0, simulated = signals_;
     for (const Holds holds : holds_) {
-      const auto value = static_cast<float>(next());
-      if (holds == Holds::signal) (column++)->push_back(value);
-      if (holds == Holds::simulated) (simulated_column++)->push_back(value);
+      const auto value = static_cast<float>(next_cell(line));
+      if (holds == Holds::signal) block_columns_[signal++].push_back(value);
+      if (holds == Holds::simulated) block_columns_[simulated++].push_back(value);
     }
     if (!line.empty()) fail(fmt::format("is damaged in line {}: it has more values than columns", line_number_));
   }
@@ -188,10 +276,22 @@ class CsvReader {
     throw device::Error(fmt::format("{} {}. Nothing was loaded.", name_, what));
   }
 
+  static constexpr std::size_t block_samples = 4096, no_block = SIZE_MAX;
+  struct Block {
+    std::uint64_t offset;     ///< of its first sample in the file
+    std::size_t line_number;  ///< of its first sample
+  };
+
   std::string name_;
-  std::istream& stream_;
+  std::unique_ptr<std::istream> stream_;
+  Lines lines_;
   Recording recording_;
+  Stretches stretches_;
   std::vector<Holds> holds_;  ///< for each column after the time
+  std::size_t width_ = 0, signals_ = 0;
+  std::vector<Block> blocks_;
+  std::vector<std::vector<float>> block_columns_;  ///< values of the last read block
+  std::size_t read_block_ = no_block;
   std::size_t line_number_ = 0;
   bool is_recording_ = false;
   bool columns_known_ = false;
@@ -199,6 +299,10 @@ class CsvReader {
 
 }  // namespace
 
-Recording read_csv(std::istream& stream, const std::string& name) { return CsvReader(stream, name).read(); }
+StoredRecording open_csv(std::unique_ptr<std::istream> stream, const std::string& name) {
+  const auto reader = std::make_shared<CsvReader>(std::move(stream), name);
+  Recording head = reader->read_head();
+  return {std::move(head), reader->stretches(), reader};
+}
 
 }  // namespace inkwell::recording

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <span>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -33,12 +32,8 @@ constexpr std::string_view broken = "dashtype (8,5)", separator = "  ·  ";
 
 constexpr std::array colours = {"blue", "vermilion", "green", "purple", "orange", "sky", "ink"};
 
-struct Range {
-  std::size_t begin, end;
-};
-
 /// Returns true if each sample is drawn as one point. Samples of a black box need not be evenly spaced.
-bool has_point_each(const StoredRecording& recording, Range shown) {
+bool has_point_each(const StoredRecording& recording, SampleRange shown) {
   return recording.information.step_periods > 1 && shown.end - shown.begin <= points_maximum;
 }
 
@@ -55,31 +50,13 @@ std::vector<Quantity> held_by(const Overlay* over, const std::vector<Quantity>& 
   return held;
 }
 
-/// Reads the values in blocks, so that a long recording needs little memory.
-Band band_in(const StoredRecording& recording, std::size_t column, Range range) {
-  constexpr std::size_t block_samples = 16'384;
-  std::array<float, block_samples> block;
-  Band band{std::nan(""), std::nan(""), std::nan("")};
-  double sum = 0;
-  for (std::size_t begin = range.begin; begin < range.end; begin += block_samples) {
-    const std::span<float> values{block.data(), std::min(block_samples, range.end - begin)};
-    recording.read(column, begin, values);
-    const Band part = band_of(values.size(), [&](std::size_t i) { return static_cast<double>(values[i]); });
-    sum += part.mean * static_cast<double>(values.size());
-    band.minimum = std::fmin(band.minimum, part.minimum);
-    band.maximum = std::fmax(band.maximum, part.maximum);
-  }
-  if (range.begin < range.end) band.mean = sum / static_cast<double>(range.end - range.begin);
-  return band;
-}
-
-/// Appends a band for each range and quantity. Reads one column after the other, because a column is stored in chunks.
+/// Appends a band for each range and quantity.
 void add_bands(FigureData& data, const StoredRecording& recording, const std::vector<Quantity>& quantities,
-               const std::vector<Range>& ranges) {
-  for (const auto quantity : quantities) {
-    const std::size_t column = recording.column_of(quantity);
-    for (std::size_t i = 0; i < ranges.size(); ++i) data.rows[i].bands.push_back(band_in(recording, column, ranges[i]));
-  }
+               const std::vector<SampleRange>& ranges) {
+  std::vector<std::size_t> columns;
+  for (const auto quantity : quantities) columns.push_back(recording.column_of(quantity));
+  const auto bands = recording.bands(columns, ranges);
+  for (std::size_t i = 0; i < ranges.size(); ++i) std::ranges::copy(bands[i], std::back_inserter(data.rows[i].bands));
 }
 
 /// Appends the bands of the overlaid recording for the same time ranges.
@@ -90,7 +67,7 @@ void add_over(FigureData& data, const Overlay& over, const std::vector<Quantity>
   for (const auto quantity : held) data.names.push_back(name_over(quantity));
   const double step_s =
       data.rows.size() < 2 ? 1.0 / protocol::servo_rate_Hz : data.rows[1].time_s - data.rows[0].time_s;
-  std::vector<Range> ranges;
+  std::vector<SampleRange> ranges;
   for (const auto& row : data.rows) {
     const double start_s = row.time_s - 0.5 * step_s - over.begins_s();
     const std::size_t begin = recording.sample_at(start_s), end = recording.sample_at(start_s + step_s);
@@ -99,12 +76,12 @@ void add_over(FigureData& data, const Overlay& over, const std::vector<Quantity>
   add_bands(data, recording, held, ranges);
 }
 
-FigureData data_of(const StoredRecording& recording, const std::vector<Quantity>& quantities, Range shown,
+FigureData data_of(const StoredRecording& recording, const std::vector<Quantity>& quantities, SampleRange shown,
                    double from_s, double to_s) {
   FigureData data;
   for (const auto quantity : quantities) data.names.emplace_back(name_of(quantity));
   const std::size_t points = std::min(points_maximum, shown.end - shown.begin);
-  std::vector<Range> ranges;
+  std::vector<SampleRange> ranges;
   if (has_point_each(recording, shown)) {
     for (std::size_t i = shown.begin; i < shown.end; ++i) {
       data.rows.push_back({recording.elapsed_s(i), {}});
@@ -320,7 +297,7 @@ void draw_figure(const StoredRecording& recording, const FigureOptions& options,
   const auto quantities = options.quantities.empty() ? recording.quantities() : options.quantities;
   const double end_s = recording.duration_s();
   const double from_s = std::max(0.0, options.from_s), to_s = std::min(end_s, options.to_s.value_or(end_s));
-  const Range shown{recording.sample_at(from_s), recording.sample_at(to_s + 0.5 / protocol::servo_rate_Hz)};
+  const SampleRange shown{recording.sample_at(from_s), recording.sample_at(to_s + 0.5 / protocol::servo_rate_Hz)};
   if (shown.end <= shown.begin + 1)
     throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording lasts {:.3f} s.",
                                     options.from_s, options.to_s.value_or(end_s), end_s));

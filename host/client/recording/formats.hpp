@@ -39,7 +39,7 @@ StoredRecording open_hdf5(std::span<const std::byte> content, const std::string&
 
 std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information,
                                    const std::string& name);
-/// `name`: the file's name in error sentences.
-Recording read_csv(std::istream& stream, const std::string& name);
+/// Indexes the samples, which stay in the stream. `name`: the file's name in error sentences.
+StoredRecording open_csv(std::unique_ptr<std::istream> stream, const std::string& name);
 
 }  // namespace inkwell::recording

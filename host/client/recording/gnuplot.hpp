@@ -1,36 +1,14 @@
 // Common code of all figures.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "host/client/recording/band.hpp"
+
 namespace inkwell::recording {
-
-/// Many samples in one point of a figure. The line shows the mean, and the band shows the smallest and the largest
-/// value.
-struct Band {
-  double mean, minimum, maximum;
-};
-
-/// Returns the band of value_at(0) to value_at(count - 1). Without values all members are NaN, which leaves a gap in
-/// the figure.
-template <class ValueAt>
-Band band_of(std::size_t count, ValueAt value_at) {
-  if (count == 0) return {std::nan(""), std::nan(""), std::nan("")};
-  double sum = 0, smallest = 0, largest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double value = value_at(i);
-    smallest = i == 0 ? value : std::min(smallest, value);
-    largest = i == 0 ? value : std::max(largest, value);
-    sum += value;
-  }
-  return {sum / static_cast<double>(count), smallest, largest};
-}
 
 /// Data of a figure: bands over time.
 struct FigureData {

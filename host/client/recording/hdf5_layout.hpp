@@ -15,11 +15,15 @@
 //   `/marks/clock_utc`     text[M]: time of the computer, ISO 8601 with microseconds.
 //   `/clock/period`        int64[C], control period of a sample, about once per second.
 //   `/clock/utc_us`        int64[C], time of the computer when this sample arrived, microseconds since 1970.
+//   `/overview/signals/NAME`, `/overview/simulated/NAME`
+//                          float32[3 B], minimum, maximum and mean of each block of 256 samples. Samples after the
+//                          last block have no overview. The overview replaces the samples in plots of a long time.
+//   `/overview/blocks`     uint64, number of blocks that are completely on disk.
 //   `/samples`             uint64, number of samples that are completely on disk; a column may be longer after a crash.
 //   `/complete`            int32, 1 once the recording has ended and nothing is missing.
 //
 // In files of earlier versions, control periods are uint32 values that wrap. These files contain no `/marks/kind`, no
-// `/marks/clock_utc` and no `/clock`, and fewer attributes.
+// `/marks/clock_utc`, no `/clock` and no `/overview`, and fewer attributes. A black box has no `/overview`.
 #pragma once
 
 #include <cstddef>

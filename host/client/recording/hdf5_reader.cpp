@@ -22,6 +22,7 @@ class Hdf5Reader final : public ColumnReader {
   ~Hdf5Reader() override {
     const QuietHdf5 quiet;
     columns_.clear();
+    overviews_.clear();
     input_.reset();
   }
 
@@ -32,7 +33,9 @@ class Hdf5Reader final : public ColumnReader {
     std::uint64_t whole = std::min(samples, input_->length_of("/period"));
     for (const auto& path : paths_) whole = std::min(whole, input_->length_of(path));
     read_stretches(whole);
+    read_overview_length();
     columns_.resize(paths_.size());
+    overviews_.resize(paths_.size());
     const bool is_complete = input_->whole_number("/complete") == 1;
     try {
       read_marks();
@@ -55,8 +58,32 @@ class Hdf5Reader final : public ColumnReader {
     if (!columns_[column]) columns_[column] = input_->real_number_column(paths_[column], stretches_.size());
     input_->read(*columns_[column], begin, values);
   }
+  std::size_t overview_blocks() const override { return overview_blocks_; }
+  void read_overview(std::size_t column, std::size_t begin, std::span<OverviewBlock> blocks) override {
+    const QuietHdf5 quiet;
+    auto& overview = overviews_[column];
+    if (!overview)
+      overview = input_->real_number_column(overview_path(column), overview_block_values * overview_blocks_);
+    std::vector<float> values(overview_block_values * blocks.size());
+    input_->read(*overview, overview_block_values * begin, values);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      blocks[i] = {values[overview_block_values * i], values[overview_block_values * i + 1],
+                   values[overview_block_values * i + 2]};
+  }
 
  private:
+  std::string overview_path(std::size_t column) const { return "/overview" + paths_[column]; }
+  /// Files of earlier versions have no overview.
+  void read_overview_length() {
+    if (!input_->has("/overview") || !input_->has("/overview/blocks")) return;
+    auto blocks = static_cast<std::uint64_t>(std::max<std::int64_t>(0, input_->whole_number("/overview/blocks")));
+    blocks = std::min<std::uint64_t>(blocks, stretches_.size() / overview_block_samples);
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      if (!input_->has(overview_path(i))) return;
+      blocks = std::min(blocks, input_->length_of(overview_path(i)) / overview_block_values);
+    }
+    overview_blocks_ = static_cast<std::size_t>(blocks);
+  }
   void read_information() {
     auto& about = recording_.information;
     if (input_->number_attribute("format_version") > format_version)
@@ -176,8 +203,9 @@ class Hdf5Reader final : public ColumnReader {
   std::optional<Hdf5Input> input_;
   Recording recording_;
   Stretches stretches_;
-  std::vector<std::string> paths_;                          ///< of the columns
-  std::vector<std::optional<Hdf5Input::Dataset>> columns_;  ///< opened at the first use
+  std::vector<std::string> paths_;                                      ///< of the columns
+  std::vector<std::optional<Hdf5Input::Dataset>> columns_, overviews_;  ///< opened at the first use
+  std::size_t overview_blocks_ = 0;
 };
 
 /// A recorder may still write the file.

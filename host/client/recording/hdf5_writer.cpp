@@ -21,12 +21,15 @@
 
 #include "host/client/recording/hdf5_file.hpp"
 #include "host/client/recording/hdf5_layout.hpp"
+#include "host/client/recording/overview.hpp"
 
 namespace inkwell::recording {
 namespace {
 
 constexpr hsize_t chunk_periods = 4096;      ///< 0.2 s, lost in a crash in addition to flush_interval
 constexpr hsize_t chunk_samples_least = 16;  ///< a chunk has some tens of bytes of overhead
+constexpr hsize_t chunk_overview_blocks = 512;
+static_assert(chunk_periods % overview_block_samples == 0);
 constexpr hsize_t chunk_marks = 16;
 constexpr unsigned compression_level = 2;  // of 9; low, so that the writer keeps up with 20 kHz
 
@@ -36,8 +39,10 @@ class Hdf5Writer final : public Writer {
       : name_(std::move(name)),
         file_name_(file.string()),
         width_(information.signals.size()),
+        has_overview_(information.step_periods == 1),
         chunk_samples_(std::max(chunk_samples_least, chunk_periods / std::max(1u, information.step_periods))),
-        values_(information.signals.size() + information.simulated.size()) {
+        values_(information.signals.size() + information.simulated.size()),
+        waiting_overviews_(values_.size()) {
     const QuietHdf5 quiet;
     lay_out(information);
     open_for_writing(information);
@@ -84,10 +89,14 @@ class Hdf5Writer final : public Writer {
     // elements than were written.
     if (H5Dwrite(samples_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &size_) < 0) fail();
     if (H5Dflush(samples_.id()) < 0) fail();
+    if (!has_overview_) return;
+    if (H5Dwrite(overview_blocks_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &blocks_) < 0) fail();
+    if (H5Dflush(overview_blocks_.id()) < 0) fail();
   }
   void end(bool is_complete) override {
     const QuietHdf5 quiet;
     write_samples(periods_.size());
+    write_overview(waiting_blocks());
     flush();
     const std::int32_t written = is_complete ? 1 : 0;
     if (H5Dwrite(complete_.id(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, &written) < 0) fail();
@@ -167,6 +176,7 @@ class Hdf5Writer final : public Writer {
     for (const auto signal : about.signals) lay_out_column(signals, protocol::info(signal));
     const Handle simulated = group(file.id(), "simulated");
     for (const auto quantity : about.simulated) lay_out_column(simulated, protocol::info(quantity));
+    if (has_overview_) lay_out_overview(file, about);
     const Handle marks = group(file.id(), "marks");
     // Marks are written immediately into chunks of constant size.
     growing(marks.id(), "period", H5T_STD_I64LE, chunk_marks, Packing::none);
@@ -188,6 +198,19 @@ class Hdf5Writer final : public Writer {
     write_attribute(column.id(), "unit", std::string(row.unit));
     write_attribute(column.id(), "help", std::string(row.help));
   }
+  void lay_out_overview(const Handle& file, const Information& about) {
+    const Handle overview = group(file.id(), "overview");
+    const auto add = [&](const Handle& parent, const auto& row) {
+      growing(parent.id(), std::string(row.name), H5T_IEEE_F32LE, overview_block_values * chunk_overview_blocks,
+              Packing::compressed);
+    };
+    const Handle signals = group(overview.id(), "signals");
+    for (const auto signal : about.signals) add(signals, protocol::info(signal));
+    const Handle simulated = group(overview.id(), "simulated");
+    for (const auto quantity : about.simulated) add(simulated, protocol::info(quantity));
+    const hsize_t none = 0;
+    scalar(overview.id(), "blocks", H5T_NATIVE_HSIZE, &none);
+  }
   void open_for_writing(const Information& about) {
     file_ = Handle(H5Fopen(file_name_.c_str(), H5F_ACC_RDWR, access().id()), H5Fclose);
     if (!file_) fail();
@@ -200,10 +223,14 @@ class Hdf5Writer final : public Writer {
     };
     period_ = open("/period");
     time_ = open("/time_s");
-    for (const auto signal : about.signals)
-      columns_.push_back(open(fmt::format("/signals/{}", protocol::info(signal).name)));
+    const auto open_column = [&](const std::string& path) {
+      columns_.push_back(open(path));
+      if (has_overview_) overviews_.push_back(open("/overview" + path));
+    };
+    for (const auto signal : about.signals) open_column(fmt::format("/signals/{}", protocol::info(signal).name));
     for (const auto quantity : about.simulated)
-      columns_.push_back(open(fmt::format("/simulated/{}", protocol::info(quantity).name)));
+      open_column(fmt::format("/simulated/{}", protocol::info(quantity).name));
+    if (has_overview_) overview_blocks_ = open("/overview/blocks");
     mark_period_ = open("/marks/period");
     mark_text_ = open("/marks/text");
     mark_kind_ = open("/marks/kind");
@@ -216,6 +243,7 @@ class Hdf5Writer final : public Writer {
   void write_samples(std::size_t count) {
     const QuietHdf5 quiet;
     if (count == 0) return;
+    if (has_overview_) add_to_overview(count);
     const auto put = [&](const Handle& column, hid_t type, auto& waiting) {
       extend(column, size_, count, type, waiting.data());
       waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(count));
@@ -224,6 +252,25 @@ class Hdf5Writer final : public Writer {
     put(time_, H5T_NATIVE_DOUBLE, times_s_);
     for (std::size_t j = 0; j < values_.size(); ++j) put(columns_[j], H5T_NATIVE_FLOAT, values_[j]);
     size_ += count;
+    if (waiting_blocks() >= chunk_overview_blocks) write_overview(chunk_overview_blocks);
+  }
+  hsize_t waiting_blocks() const { return waiting_overviews_.empty() ? 0 : waiting_overviews_.front().size(); }
+  /// A full chunk of samples has whole blocks. The rest at the end of the recording has no overview.
+  void add_to_overview(std::size_t count) {
+    for (std::size_t j = 0; j < values_.size(); ++j)
+      for (std::size_t begin = 0; begin + overview_block_samples <= count; begin += overview_block_samples)
+        waiting_overviews_[j].push_back(overview_of(std::span(values_[j]).subspan(begin, overview_block_samples)));
+  }
+  /// Writes whole chunks, because a compressed chunk must not change. Until then, the blocks have no overview on disk.
+  void write_overview(hsize_t blocks) {
+    if (blocks == 0) return;
+    for (std::size_t j = 0; j < overviews_.size(); ++j) {
+      auto& waiting = waiting_overviews_[j];
+      extend(overviews_[j], overview_block_values * blocks_, overview_block_values * blocks, H5T_NATIVE_FLOAT,
+             waiting.data());
+      waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(blocks));
+    }
+    blocks_ += blocks;
   }
   int descriptor() const {
     void* handle = nullptr;
@@ -259,8 +306,9 @@ class Hdf5Writer final : public Writer {
   void close() {
     own_.forget();
     columns_.clear();
+    overviews_.clear();
     for (Handle* handle : {&period_, &time_, &mark_period_, &mark_text_, &mark_kind_, &mark_clock_, &clock_period_,
-                           &clock_utc_us_, &complete_, &samples_, &file_})
+                           &clock_utc_us_, &complete_, &samples_, &overview_blocks_, &file_})
       *handle = Handle();
   }
   [[noreturn]] void fail() const {
@@ -276,15 +324,19 @@ class Hdf5Writer final : public Writer {
 
   std::string name_, file_name_;
   std::size_t width_;  ///< number of signals
+  bool has_overview_;
   hsize_t chunk_samples_;
   Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, clock_period_, clock_utc_us_,
-      complete_, samples_;
+      complete_, samples_, overview_blocks_;
   process::OwnDescriptor own_;         ///< descriptor of the file
   std::vector<Handle> columns_;        ///< signals, then simulated quantities
   std::vector<std::int64_t> periods_;  ///< samples that are not in the file yet, with the columns below
   std::vector<double> times_s_;
   std::vector<std::vector<float>> values_;
-  hsize_t size_ = 0;  ///< number of samples in the file
+  std::vector<Handle> overviews_;                              ///< one for each column
+  std::vector<std::vector<OverviewBlock>> waiting_overviews_;  ///< blocks that are not in the file yet
+  hsize_t blocks_ = 0;                                         ///< number of blocks in the file
+  hsize_t size_ = 0;                                           ///< number of samples in the file
   hsize_t mark_count_ = 0, clock_count_ = 0;
 };
 

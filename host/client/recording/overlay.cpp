@@ -27,19 +27,27 @@ void check_holds_samples(const StoredRecording& recording) {
 }  // namespace
 
 Overlay::Overlay(StoredRecording over, const StoredRecording& base, std::string_view mark) : over_(std::move(over)) {
+  signals_ = over_.information.signals;
   check_holds_samples(over_);
   check_holds_samples(base);
   base_begins_periods_ = base.first_period();
   if (!mark.empty()) shift_periods_ = periods_to_mark(base, mark) - periods_to_mark(over_, mark);
 }
 
+bool Overlay::select(const std::vector<protocol::Signal>& shown) {
+  auto selected = recorded_of(over_.information.signals, shown);
+  if (selected == signals_) return false;
+  signals_ = std::move(selected);
+  return true;
+}
+
 device::ScopeSamples Overlay::compared_with(const device::ScopeSamples& of_base) const {
-  device::ScopeSamples samples{.signals = over_.information.signals,
+  device::ScopeSamples samples{.signals = signals_,
                                .first_period = of_base.first_period,
                                .count = of_base.count,
                                .values = {},
                                .lost_before = of_base.lost_before};
-  const std::size_t width = over_.information.signals.size();
+  const std::size_t width = signals_.size();
   samples.values.assign(samples.count * width, std::nanf(""));
   const std::int64_t first = of_base.first_period - base_begins_periods_ - shift_periods_;
   const auto elapsed_periods = [&](std::size_t sample) { return over_.period(sample) - over_.first_period(); };
@@ -49,7 +57,7 @@ device::ScopeSamples Overlay::compared_with(const device::ScopeSamples& of_base)
   if (sample > 0 && (sample == over_.size() || elapsed_periods(sample) > first)) --sample;
   const double end_s = static_cast<double>(first + static_cast<std::int64_t>(samples.count)) / protocol::servo_rate_Hz;
   const std::size_t begin = std::min(sample, over_.size() - 1), end = std::max(begin, over_.sample_at(end_s));
-  const std::vector<float> rows = over_.rows(begin, end);
+  const std::vector<float> rows = over_.rows(begin, end, signals_);
   for (std::size_t i = 0; i < samples.count && begin < end; ++i) {
     const std::int64_t at = first + static_cast<std::int64_t>(i);
     while (sample + 1 < end && elapsed_periods(sample + 1) <= at) ++sample;

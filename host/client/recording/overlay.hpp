@@ -22,11 +22,15 @@ class Overlay {
   const StoredRecording& recording() const { return over_; }
   /// Start of the overlaid recording, relative to the first sample of the base.
   double begins_s() const { return static_cast<double>(shift_periods_) / protocol::servo_rate_Hz; }
+  /// Selects the signals that compared_with() returns. Signals that were not recorded are omitted. Default: all
+  /// signals. Returns true if the selection has changed.
+  bool select(const std::vector<protocol::Signal>& shown);
   /// Returns the values at the control periods of the base recording. Missing values are NaN.
   device::ScopeSamples compared_with(const device::ScopeSamples& of_base) const;
 
  private:
   StoredRecording over_;
+  std::vector<protocol::Signal> signals_;
   std::int64_t base_begins_periods_;  ///< first control period of the base
   std::int64_t shift_periods_ = 0;    ///< start of the overlaid recording, in periods of the base
 };

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <memory>
 #include <new>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -117,7 +119,8 @@ std::uint32_t step_periods_of(double written) {
 namespace {
 
 StoredRecording open_either(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  auto opened = std::make_unique<std::ifstream>(file, std::ios::binary);
+  std::ifstream& stream = *opened;
   if (!stream)
     throw device::Error(fmt::format("{} cannot be read. Give the name of a recording that exists.", file.string()));
   std::array<char, 8> start{};
@@ -127,7 +130,7 @@ StoredRecording open_either(const std::filesystem::path& file) {
   if (local::without_byte_order_mark({start.data(), start.size()}).starts_with('#')) {
     stream.clear();  // clears the end-of-file state of a shorter file
     stream.seekg(0);
-    return read_csv(stream, file.string());
+    return open_csv(std::move(opened), file.string());
   }
   throw device::Error(fmt::format("{} is not a recording: it is neither HDF5 nor a CSV file that starts with \"# {}\".",
                                   file.string(), format_name));

@@ -14,7 +14,7 @@ constexpr double half_period_s = 0.5 / protocol::servo_rate_Hz;
 
 }  // namespace
 
-Replay::Replay(StoredRecording recording) : recording_(std::move(recording)) {
+Replay::Replay(StoredRecording recording) : recording_(std::move(recording)), signals_(recording_.information.signals) {
   if (recording_.size() == 0) throw device::Error("The recording contains no samples, so there is nothing to replay.");
   for (std::size_t i = 0; i < recording_.information.signals.size(); ++i)
     columns_[static_cast<std::size_t>(recording_.information.signals[i])] = i;
@@ -30,6 +30,16 @@ void Replay::seek(double position_s) {
   was_moved_ = true;
 }
 
+bool Replay::select(const std::vector<Signal>& shown) {
+  auto selected = recorded_of(recording_.information.signals, shown);
+  // A block without signals would have no samples.
+  if (selected.empty() && !recording_.information.signals.empty())
+    selected.push_back(recording_.information.signals.front());
+  if (selected == signals_) return false;
+  signals_ = std::move(selected);
+  return true;
+}
+
 void Replay::set_speed(double speed) { speed_ = std::clamp(speed, speed_minimum, speed_maximum); }
 
 Replay::Passed Replay::advance(double passed_s, double history_s) {
@@ -39,16 +49,29 @@ Replay::Passed Replay::advance(double passed_s, double history_s) {
   if (position_s_ >= duration_s()) is_playing_ = false;
 
   const std::size_t end = recording_.sample_at(position_s_ + half_period_s);
-  for (; recording_.information.step_periods > 1 && next_sample_ < end; ++next_sample_)
-    passed.blocks.push_back(recording_.held_sample(next_sample_));
-  while (next_sample_ < end) {
-    const std::size_t last =
-        recording_.end_of_stretch(next_sample_, std::min(end, next_sample_ + block_samples_maximum));
-    passed.blocks.push_back(recording_.samples(next_sample_, last));
-    next_sample_ = last;
-  }
+  add_blocks(passed.blocks, next_sample_, end);
+  next_sample_ = std::max(next_sample_, end);
   if (passed.is_restart && !passed.blocks.empty()) passed.blocks.front().lost_before = 0;
   return passed;
+}
+
+void Replay::add_blocks(std::vector<device::ScopeSamples>& blocks, std::size_t begin, std::size_t end) const {
+  for (; recording_.information.step_periods > 1 && begin < end; ++begin)
+    blocks.push_back(recording_.held_sample(begin, signals_));
+  while (begin < end) {
+    const std::size_t last = recording_.end_of_stretch(begin, std::min(end, begin + block_samples_maximum));
+    blocks.push_back(recording_.samples(begin, last, signals_));
+    begin = last;
+  }
+}
+
+std::vector<device::ScopeSamples> Replay::between(std::int64_t first_period, std::int64_t end_period) const {
+  const auto sample_at = [this](std::int64_t period) {
+    return recording_.sample_at(device::board_time_s(period - recording_.first_period()));
+  };
+  std::vector<device::ScopeSamples> blocks;
+  add_blocks(blocks, sample_at(first_period), sample_at(end_period));
+  return blocks;
 }
 
 std::optional<std::size_t> Replay::column_of(Signal signal) const { return columns_[static_cast<std::size_t>(signal)]; }

@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "host/client/device/scope_decoder.hpp"
@@ -25,6 +25,11 @@ class Replay {
   double duration_s() const { return recording_.duration_s(); }
   double position_s() const { return position_s_; }
   double speed() const { return speed_; }
+  /// Signals of the returned samples.
+  const std::vector<protocol::Signal>& signals() const { return signals_; }
+  /// Selects the signals of the returned samples, because reading all signals takes longer. Signals that were not
+  /// recorded are omitted. Default: all signals. Returns true if the selection has changed.
+  bool select(const std::vector<protocol::Signal>& shown);
   bool is_playing() const { return is_playing_; }
 
   /// Starts the replay. If the replay has reached the end, it restarts from the beginning.
@@ -42,6 +47,8 @@ class Replay {
   /// Advances by wall time and returns the samples of this interval. After a seek, the samples start `history_s` before
   /// the new position, so that a scope is filled immediately. The replay stops at the end.
   Passed advance(double passed_s, double history_s);
+  /// Returns the samples of a time range again, for example after select().
+  std::vector<device::ScopeSamples> between(std::int64_t first_period, std::int64_t end_period) const;
 
   /// Pose at the present position. std::nullopt if no joint angles were recorded. State and switches are not recorded.
   /// The returned state is `active` if the force is not zero. In the returned pose no switch is pressed.
@@ -49,9 +56,11 @@ class Replay {
 
  private:
   std::optional<std::size_t> column_of(protocol::Signal signal) const;
+  void add_blocks(std::vector<device::ScopeSamples>& blocks, std::size_t begin, std::size_t end) const;
   std::size_t present_sample() const;  ///< the newest sample at or before the position
 
   StoredRecording recording_;
+  std::vector<protocol::Signal> signals_;
   std::array<std::optional<std::size_t>, protocol::signal_count + protocol::force_law_signals_maximum> columns_;
   double position_s_ = 0;
   double speed_ = 1;

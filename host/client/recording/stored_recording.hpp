@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "host/client/recording/band.hpp"
+#include "host/client/recording/overview.hpp"
 #include "host/client/recording/recording.hpp"
 #include "host/client/recording/stretches.hpp"
 
@@ -20,12 +22,21 @@ class ColumnReader {
   virtual ~ColumnReader() = default;
   /// Reads the values of the samples from `begin` on. Throws device::Error if the file is damaged there.
   virtual void read(std::size_t column, std::size_t begin, std::span<float> values) = 0;
+  /// Number of blocks with a stored overview. The first block starts with the first sample.
+  virtual std::size_t overview_blocks() const { return 0; }
+  /// Reads the overview from the block `begin` on.
+  virtual void read_overview(std::size_t, std::size_t, std::span<OverviewBlock>) {}
 };
 
-/// Copies share the opened file.
+/// Samples from `begin` to `end` - 1.
+struct SampleRange {
+  std::size_t begin, end;
+};
+
+/// Copies share the opened file. Use all copies on the same thread.
 class StoredRecording {
  public:
-  /// Opens a recording. The samples of an HDF5 file stay in the file. Throws device::Error like read().
+  /// Opens a recording. The samples stay in the file. Throws device::Error like read().
   static StoredRecording open(const std::filesystem::path& file);
   /// Samples in memory.
   StoredRecording(Recording recording);  // NOLINT(google-explicit-constructor)
@@ -62,19 +73,31 @@ class StoredRecording {
   // These functions read the file. They throw device::Error if the file is damaged there.
   void read(std::size_t column, std::size_t begin, std::span<float> values) const;
   float value(std::size_t column, std::size_t sample) const;
-  /// Values of the signals: element i * information.signals.size() + j is signal j of sample begin + i.
-  std::vector<float> rows(std::size_t begin, std::size_t end) const;
+  /// Mean and extremes: element [i][j] is column columns[j] in range i. A range of at least a thousand samples may be
+  /// widened to whole blocks of the overview, but not across a gap.
+  std::vector<std::vector<Band>> bands(std::span<const std::size_t> columns, std::span<const SampleRange> ranges) const;
+  /// Values of some signals: element i * signals.size() + j is signal j of sample begin + i.
+  std::vector<float> rows(std::size_t begin, std::size_t end, std::span<const protocol::Signal> signals) const;
   /// Samples of a range in the format of the scope. Missing periods before the range count as lost.
-  device::ScopeSamples samples(std::size_t begin, std::size_t end) const;
+  device::ScopeSamples samples(std::size_t begin, std::size_t end, const std::vector<protocol::Signal>& signals) const;
   /// One sample in the format of the scope, repeated until the next sample.
-  device::ScopeSamples held_sample(std::size_t sample) const;
+  device::ScopeSamples held_sample(std::size_t sample, const std::vector<protocol::Signal>& signals) const;
   /// Loads the samples of some quantities.
   Recording load(const std::vector<Quantity>& quantities) const;
 
  private:
+  /// Part of a range that is read from the overview, in whole blocks; empty for a short range.
+  SampleRange overview_part(SampleRange range) const;
+  void add_samples(std::span<BandSum> sums, std::span<const std::size_t> columns, SampleRange range) const;
+  bool has_gap(std::size_t begin, std::size_t end) const { return stretches_.end_of_stretch(begin) < end; }
+
   Stretches stretches_;
   std::shared_ptr<ColumnReader> reader_;
 };
+
+/// Returns the signals that are in both lists, in the order of `recorded`.
+std::vector<protocol::Signal> recorded_of(const std::vector<protocol::Signal>& recorded,
+                                          const std::vector<protocol::Signal>& shown);
 
 /// One line per mark: clock, time since the first sample, kind, text.
 std::string log_text(const StoredRecording& recording);

@@ -39,8 +39,7 @@ void print_pictures(const DeviceOptions& options, const std::vector<std::string>
 std::vector<std::string> draw_as_in_paper(const recording::StoredRecording& recording, const PlotOptions& options) {
   const auto folder = options.output.empty() ? std::filesystem::path(options.file).parent_path()
                                              : std::filesystem::path(options.output);
-  return experiment::draw_figures(recording.load(experiment::figure_quantities()), folder,
-                                  {.wall = {}, .from_s = options.from_s, .to_s = options.to_s});
+  return experiment::draw_figures(recording, folder, {.wall = {}, .from_s = options.from_s, .to_s = options.to_s});
 }
 
 std::string draw(recording::StoredRecording recording, const PlotOptions& options) {

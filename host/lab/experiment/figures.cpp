@@ -1,6 +1,7 @@
 #include "host/lab/experiment/figures.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,9 +15,20 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 using protocol::Signal;
 using recording::FigureData;
-using recording::Recording;
+using recording::StoredRecording;
 
-constexpr std::size_t samples_per_point = protocol::servo_rate_Hz / 1000;
+constexpr std::size_t samples_per_ms = protocol::servo_rate_Hz / 1000;
+constexpr std::size_t points_maximum = 5000;  // several for each pixel of the width
+
+/// Returns the duration of a point in a figure.
+std::size_t point_ms(Interval shown) {
+  return 1 + static_cast<std::size_t>(1000 * (shown.to_s - shown.from_s)) / points_maximum;
+}
+
+std::string point_text(Interval shown) {
+  const std::size_t ms = point_ms(shown);
+  return ms == 1 ? "a millisecond" : fmt::format("{} ms", ms);
+}
 
 /// A quantity in the figures.
 struct Shown {
@@ -52,12 +64,12 @@ set tmargin at screen 0.79
 set bmargin at screen 0.13
 )";
 
-std::string head(const recording::Information& about, BoxWall wall, int number, const char* title) {
+std::string head(const recording::Information& about, BoxWall wall, Interval shown, int number, const char* title) {
   const auto& parameters = about.parameters;
   const std::string subtitle = fmt::format(
-      "Figure {}  ·  {}{}  ·  wall {}  ·  k = {} N/m, c = {} Ns/m  ·  line: mean of a millisecond, band: its extremes",
-      number, about.simulation ? "simulation  ·  " : "", about.arm.empty() ? "unknown arm" : about.arm, wall_name(wall),
-      parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]);
+      "Figure {}  ·  {}{}  ·  wall {}  ·  k = {} N/m, c = {} Ns/m  ·  line: mean of {}, band: its extremes", number,
+      about.simulation ? "simulation  ·  " : "", about.arm.empty() ? "unknown arm" : about.arm, wall_name(wall),
+      parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m], point_text(shown));
   return fmt::format("\nset output 'figure-{}.png'\nunset label\n{}", number,
                      recording::figure_titles(fmt::format("{}{}", title, about.simulation ? " (simulation)" : ""),
                                               subtitle, height_pixels));
@@ -78,7 +90,7 @@ std::string script(const recording::Information& about, const FigureData& data, 
   double deepest_mm = 0.5;
   for (const auto& row : data.rows) deepest_mm = std::max(deepest_mm, row.bands.front().maximum);
   // The axis shows only the penetration, because the free motion is ten times larger.
-  text += head(about, wall, 11, "Position of the sphere relative to the wall");
+  text += head(about, wall, shown, 11, "Position of the sphere relative to the wall");
   text += fmt::format(
       "set ylabel 'sphere’s surface beyond the wall  /  mm' textcolor rgb ink\n"
       "set yrange [{0:.3f}:{1:.3f}]\n"
@@ -90,18 +102,18 @@ std::string script(const recording::Information& about, const FigureData& data, 
   text += recording::plot_command({{"distance_mm", "blue", ""}});
   text += "unset object 1\nunset arrow 1\nset yrange [*:*]\n";
 
-  text += head(about, wall, 12, "Magnitude of the force");
+  text += head(about, wall, shown, 12, "Magnitude of the force");
   text += "set ylabel 'force  /  N' textcolor rgb ink\nset yrange [0:*]\n";
   text += recording::plot_command({{"force_N", "blue", ""}});
   text += "set yrange [*:*]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n";
 
-  text += head(about, wall, 13, "Torques at the three joints");
+  text += head(about, wall, shown, 13, "Torques at the three joints");
   text += "set ylabel 'torque  /  Nm' textcolor rgb ink\n";
   text += recording::plot_command({{"torque_1_Nm", "green", "T1z, waist"},
                                    {"torque_2_Nm", "blue", "T2x, shoulder"},
                                    {"torque_3_Nm", "vermilion", "T3x, elbow"}});
 
-  text += head(about, wall, 14, "Duty of the three bridges");
+  text += head(about, wall, shown, 14, "Duty of the three bridges");
   text += "set ylabel 'duty  /  % of the supply' textcolor rgb ink\n";
   text += recording::plot_command({{"duty_1_percent", "green", "bridge 1"},
                                    {"duty_2_percent", "blue", "bridge 2"},
@@ -111,34 +123,35 @@ std::string script(const recording::Information& about, const FigureData& data, 
 
 }  // namespace
 
-std::vector<recording::Quantity> figure_quantities() {
-  std::vector<recording::Quantity> needed{Signal::force_N};
-  for (const protocol::EachAxis<Signal> rows : std::initializer_list<protocol::EachAxis<Signal>>{
-           Signal::penetration_x_m, Signal::position_x_m, Signal::torque_1_Nm, Signal::duty_1})
-    for (int axis = 0; axis < 3; ++axis) needed.emplace_back(of_axis(rows, axis));
-  return needed;
-}
-
-FigureData figure_data(const Recording& recording, BoxWall wall) {
-  const auto shown = shown_quantities(recording.information.parameters, wall);
+FigureData figure_data(const StoredRecording& recording, BoxWall wall, Interval shown) {
+  const auto quantities = shown_quantities(recording.information.parameters, wall);
   FigureData data;
-  std::vector<const std::vector<float>*> columns;
-  for (const auto& quantity : shown) {
+  std::vector<std::size_t> columns;
+  for (const auto& quantity : quantities) {
     data.names.push_back(quantity.name);
-    columns.push_back(&recording.column(quantity.signal));
+    columns.push_back(recording.column_of(quantity.signal));
   }
-  for (std::size_t first = 0; first + samples_per_point <= recording.size(); first += samples_per_point) {
-    FigureData::Row row{recording.elapsed_s(first + samples_per_point / 2), {}};
-    for (std::size_t j = 0; j < shown.size(); ++j)
-      row.bands.push_back(recording::band_of(samples_per_point, [&](std::size_t i) {
-        return shown[j].scale * static_cast<double>((*columns[j])[first + i]) + shown[j].offset;
-      }));
+  const std::size_t point_samples = samples_per_ms * point_ms(shown);
+  std::vector<recording::SampleRange> ranges;
+  const std::size_t end = std::min(recording.size(), recording.sample_at(shown.to_s) + samples_per_ms);
+  for (std::size_t first = recording.sample_at(shown.from_s) / samples_per_ms * samples_per_ms;
+       first + point_samples <= end; first += point_samples)
+    ranges.push_back({first, first + point_samples});
+  const auto bands = recording.bands(columns, ranges);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    FigureData::Row row{recording.elapsed_s(ranges[i].begin + point_samples / 2), {}};
+    for (std::size_t j = 0; j < quantities.size(); ++j) {
+      const auto [mean, minimum, maximum] = bands[i][j];
+      const auto drawn = [&](double value) { return quantities[j].scale * value + quantities[j].offset; };
+      row.bands.push_back(
+          {drawn(mean), std::min(drawn(minimum), drawn(maximum)), std::max(drawn(minimum), drawn(maximum))});
+    }
     data.rows.push_back(std::move(row));
   }
   return data;
 }
 
-std::vector<std::string> draw_figures(const Recording& recording, const std::filesystem::path& directory,
+std::vector<std::string> draw_figures(const StoredRecording& recording, const std::filesystem::path& directory,
                                       const PaperFigureOptions& options) {
   const BoxWall wall = options.wall ? *options.wall : pushed_wall(recording);
   const auto contact = contact_with(recording, wall);
@@ -158,7 +171,7 @@ std::vector<std::string> draw_figures(const Recording& recording, const std::fil
     throw device::Error(fmt::format("The folder {} cannot be created: {}. Give another folder with --out.",
                                     directory.string(), code.message()));
 
-  const FigureData data = figure_data(recording, wall);
+  const FigureData data = figure_data(recording, wall, shown);
   data.write(directory / "figure-data.csv");
   recording::write_text(directory / "figures.gnuplot", script(recording.information, data, wall, shown));
   recording::run_gnuplot(directory / "figures.gnuplot");

@@ -7,16 +7,14 @@
 #include <vector>
 
 #include "host/client/recording/gnuplot.hpp"
-#include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "host/lab/experiment/summary.hpp"
 
 namespace inkwell::experiment {
 
-/// Returns the mean, smallest and largest value of each quantity in each millisecond.
-recording::FigureData figure_data(const recording::Recording& recording, BoxWall wall);
-
-/// Signals that draw_figures() needs.
-std::vector<recording::Quantity> figure_quantities();
+/// Returns the mean, smallest and largest value of each quantity in each millisecond. In a longer interval, the points
+/// are longer, so that the figures stay small.
+recording::FigureData figure_data(const recording::StoredRecording& recording, BoxWall wall, Interval shown);
 
 struct PaperFigureOptions {
   std::optional<BoxWall> wall;   ///< std::nullopt: the wall with the deepest penetration
@@ -28,7 +26,7 @@ struct PaperFigureOptions {
 /// users can redraw the figures. Returns the four pictures. Throws device::Error if a signal was not recorded, the wall
 /// was not touched, or the time range contains no samples. Throws device::Error if a file cannot be written or if
 /// gnuplot fails.
-std::vector<std::string> draw_figures(const recording::Recording& recording, const std::filesystem::path& directory,
-                                      const PaperFigureOptions& options);
+std::vector<std::string> draw_figures(const recording::StoredRecording& recording,
+                                      const std::filesystem::path& directory, const PaperFigureOptions& options);
 
 }  // namespace inkwell::experiment

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "protocol/reports.hpp"
 
@@ -124,15 +125,32 @@ std::optional<Interval> find_steady_hold(const Recording& recording, BoxWall wal
   return best;
 }
 
-std::optional<Interval> contact_with(const Recording& recording, BoxWall wall) {
-  const auto& penetration_m = recording.column(of_axis(Signal::penetration_x_m, wall.axis));
-  std::optional<Interval> contact;
-  for (std::size_t i = 0; i < penetration_m.size(); ++i) {
-    if (penetration_m[i] == 0) continue;
-    if (!contact) contact = Interval{recording.elapsed_s(i), 0};
-    contact->to_s = recording.elapsed_s(i);
-  }
-  return contact;
+std::optional<Interval> contact_with(const recording::StoredRecording& recording, BoxWall wall) {
+  constexpr std::size_t range_samples = 65'536;
+  const std::size_t column = recording.column_of(of_axis(Signal::penetration_x_m, wall.axis));
+  std::vector<recording::SampleRange> ranges;
+  for (std::size_t begin = 0; begin < recording.size(); begin += range_samples)
+    ranges.push_back({begin, std::min(recording.size(), begin + range_samples)});
+  const auto bands = recording.bands({&column, 1}, ranges);
+  const auto has_contact = [](const std::vector<recording::Band>& range) {
+    return range.front().minimum != 0 || range.front().maximum != 0;
+  };
+  const auto first = std::ranges::find_if(bands, has_contact);
+  if (first == bands.end()) return std::nullopt;
+  const auto last = std::find_if(bands.rbegin(), bands.rend(), has_contact);
+  const auto samples_of = [&](std::ptrdiff_t index) {
+    const auto [begin, end] = ranges[static_cast<std::size_t>(index)];
+    std::vector<float> penetration_m(end - begin);
+    recording.read(column, begin, penetration_m);
+    return std::pair(begin, std::move(penetration_m));
+  };
+  const auto touches = [](float penetration_m) { return penetration_m != 0; };
+  const auto [first_begin, first_m] = samples_of(first - bands.begin());
+  const auto [last_begin, last_m] = samples_of(bands.rend() - last - 1);
+  const auto touch = std::ranges::find_if(first_m, touches);
+  const auto release = std::find_if(last_m.rbegin(), last_m.rend(), touches);
+  return Interval{recording.elapsed_s(first_begin + static_cast<std::size_t>(touch - first_m.begin())),
+                  recording.elapsed_s(last_begin + static_cast<std::size_t>(last_m.rend() - release) - 1)};
 }
 
 WallResult evaluate(const Recording& recording, const ParameterSet& parameters, BoxWall wall,
@@ -147,14 +165,17 @@ WallResult evaluate(const Recording& recording, const ParameterSet& parameters, 
     largest = std::max(largest, std::abs(static_cast<double>(value)));
   };
   for (std::size_t i = 0; i < recording.size(); ++i) {
-    result.samples_in_contact += penetration_m[i] != 0;
+    if (penetration_m[i] != 0) {
+      ++result.samples_in_contact;
+      if (!result.contact) result.contact = Interval{recording.elapsed_s(i), 0};
+      result.contact->to_s = recording.elapsed_s(i);
+    }
     grow(result.penetration_maximum_m, penetration_m[i]);
     grow(result.force_maximum_N, force_N[i]);
     grow(result.torque_1_maximum_Nm, (*torque_Nm[0])[i]);
     grow(result.other_torques_maximum_Nm, (*torque_Nm[1])[i]);
     grow(result.other_torques_maximum_Nm, (*torque_Nm[2])[i]);
   }
-  result.contact = contact_with(recording, wall);
   result.force_law_error = force_law_error(recording, parameters);
   if (!hold) hold = find_steady_hold(recording, wall);
   if (hold) result.steady_hold = steady_hold(recording, wall, *hold);

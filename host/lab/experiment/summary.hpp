@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "host/lab/experiment/wall.hpp"
 #include "protocol/parameters.hpp"
 
@@ -41,7 +42,7 @@ SteadyHold steady_hold(const recording::Recording& recording, BoxWall wall, Inte
 std::optional<Interval> find_steady_hold(const recording::Recording& recording, BoxWall wall);
 
 /// Returns the interval from the first to the last contact, or std::nullopt without contact.
-std::optional<Interval> contact_with(const recording::Recording& recording, BoxWall wall);
+std::optional<Interval> contact_with(const recording::StoredRecording& recording, BoxWall wall);
 
 struct WallResult {
   std::size_t samples = 0;

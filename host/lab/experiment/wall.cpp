@@ -1,6 +1,8 @@
 #include "host/lab/experiment/wall.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -38,15 +40,21 @@ double wall_position_m(const ParameterSet& parameters, BoxWall wall) {
   return static_cast<double>(parameters[wall_parameters[wall.axis][wall.side > 0 ? 1 : 0]]);
 }
 
-BoxWall pushed_wall(const recording::Recording& recording) {
-  float deepest_m = 0;
+BoxWall pushed_wall(const recording::StoredRecording& recording) {
+  std::vector<std::size_t> columns;
+  for (int axis = 0; axis < 3; ++axis)
+    columns.push_back(recording.column_of(of_axis(protocol::Signal::penetration_x_m, axis)));
+  const recording::SampleRange all{0, recording.size()};
+  const auto penetration_m = recording.bands(columns, {&all, 1}).front();
+  double deepest_m = 0;
   BoxWall wall;
   for (int axis = 0; axis < 3; ++axis)
-    for (const float penetration_m : recording.column(of_axis(protocol::Signal::penetration_x_m, axis))) {
-      if (std::abs(penetration_m) <= deepest_m) continue;
-      deepest_m = std::abs(penetration_m);
+    for (const double extreme_m : {penetration_m[static_cast<std::size_t>(axis)].minimum,
+                                   penetration_m[static_cast<std::size_t>(axis)].maximum}) {
+      if (!(std::abs(extreme_m) > deepest_m)) continue;
+      deepest_m = std::abs(extreme_m);
       // The penetration vector points out of the wall, into the box.
-      wall = {axis, penetration_m < 0 ? 1 : -1};
+      wall = {axis, extreme_m < 0 ? 1 : -1};
     }
   if (deepest_m == 0) throw device::Error("The sphere touches no wall in this recording. Record a push into a wall.");
   return wall;

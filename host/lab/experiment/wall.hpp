@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "protocol/parameters.hpp"
 
 namespace inkwell::experiment {
@@ -25,6 +25,6 @@ BoxWall side_wall(const protocol::ParameterSet& parameters);
 double wall_position_m(const protocol::ParameterSet& parameters, BoxWall wall);
 char axis_letter(int axis);
 /// The wall with the deepest penetration. Throws device::Error without contact.
-BoxWall pushed_wall(const recording::Recording& recording);
+BoxWall pushed_wall(const recording::StoredRecording& recording);
 
 }  // namespace inkwell::experiment

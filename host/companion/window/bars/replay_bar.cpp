@@ -57,19 +57,38 @@ void ReplayBar::follow(double now_s, ScopePane& scope) {
   editor_.take_changes();
   editor_.forget_unconfirmed(now_s);
   try {
-    const auto passed = replay_->advance(passed_s, scope.span_s());
-    if (passed.is_restart) scope.restart();
-    for (const auto& block : passed.blocks) {
-      if (over_) {
-        const device::ScopeSamples compared = over_->compared_with(block);
-        scope.receive(block, &compared);
-      } else {
-        scope.receive(block);
-      }
-    }
+    const bool has_other_signals = select_signals(scope);
+    auto passed = replay_->advance(passed_s, scope.span_s());
+    if (passed.is_restart)
+      scope.restart();
+    else if (has_other_signals)
+      refill(scope);
+    for (const ReceivedBlock& block : with_over(std::move(passed.blocks)))
+      scope.receive(block.samples, block.over ? &*block.over : nullptr);
   } catch (const device::Error& error) {
     stop_at(error);
   }
+}
+
+bool ReplayBar::select_signals(const ScopePane& scope) {
+  const std::vector<protocol::Signal> shown = scope.signals();
+  const bool over_has_changed = over_ && over_->select(shown);
+  return replay_->select(shown) || over_has_changed;
+}
+
+void ReplayBar::refill(ScopePane& scope) const {
+  const SignalHistory& history = scope.history();
+  const auto held = static_cast<std::int64_t>(history.end() - history.begin());
+  scope.refill(with_over(replay_->between(history.next_period() - held, history.next_period())));
+}
+
+std::vector<ReceivedBlock> ReplayBar::with_over(std::vector<device::ScopeSamples> blocks) const {
+  std::vector<ReceivedBlock> received;
+  for (device::ScopeSamples& block : blocks) {
+    ReceivedBlock& each = received.emplace_back(std::move(block), std::nullopt);
+    if (over_) each.over = over_->compared_with(each.samples);
+  }
+  return received;
 }
 
 std::optional<device::Pose> ReplayBar::pose() try { return replay_->pose(); } catch (const device::Error& error) {

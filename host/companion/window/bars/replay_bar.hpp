@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/client/recording/overlay.hpp"
 #include "host/client/recording/replay.hpp"
@@ -46,6 +47,10 @@ class ReplayBar {
   void draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& scope);
 
  private:
+  /// Reads only the signals that the scope shows. Returns true if the selection has changed.
+  bool select_signals(const ScopePane& scope);
+  void refill(ScopePane& scope) const;
+  std::vector<ReceivedBlock> with_over(std::vector<device::ScopeSamples> blocks) const;
   void stop_at(const device::Error& error);
   void draw_controls(float name_room, const Style& style);
   void draw_over(const Style& style);

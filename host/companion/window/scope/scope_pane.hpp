@@ -36,6 +36,9 @@ class ScopePane {
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
     timeline_.receive(samples, over);
   }
+  /// Replaces the history by other signals of the same time.
+  void refill(const std::vector<ReceivedBlock>& blocks) { timeline_.refill(blocks); }
+  const SignalHistory& history() const { return timeline_.history(); }
   /// Clears the history. Call if the next samples do not directly follow the previous samples.
   void restart() { timeline_.restart(); }
   void toggle_pause() { timeline_.pause(!timeline_.is_paused()); }

@@ -22,13 +22,18 @@ Extremes merge(Extremes a, Extremes b) { return {smaller(a.minimum, b.minimum), 
 }  // namespace
 
 SignalSeries::SignalSeries(std::size_t capacity, std::uint64_t first)
-    : capacity_(capacity), first_(first), end_(first), samples_(std::make_unique_for_overwrite<float[]>(capacity)) {
+    : capacity_(capacity),
+      first_(first),
+      end_(first),
+      lap_(first / capacity * capacity),
+      samples_(std::make_unique_for_overwrite<float[]>(capacity)) {
   for (std::size_t blocks = capacity / branching; blocks >= branching; blocks /= branching)
-    levels_.push_back({std::make_unique_for_overwrite<Extremes[]>(blocks), blocks - 1});
+    levels_.push_back({std::make_unique_for_overwrite<Extremes[]>(blocks), blocks});
 }
 
 void SignalSeries::append(float value) {
-  samples_[end_ & (capacity_ - 1)] = value;
+  if (end_ == lap_ + capacity_) lap_ = end_;
+  samples_[end_ - lap_] = value;
   ++end_;
   // A complete block contains sixteen blocks of the level below.
   std::uint64_t completed = end_;
@@ -41,12 +46,18 @@ void SignalSeries::append(float value) {
         const float sample = (*this)[i];
         sum = merge(sum, {sample, sample});
       } else {
-        sum = merge(sum, levels_[k - 1].blocks[i & levels_[k - 1].mask]);
+        sum = merge(sum, levels_[k - 1].blocks[i % levels_[k - 1].count]);
       }
     }
     completed >>= bits_per_level;
-    levels_[k].blocks[(completed - 1) & levels_[k].mask] = sum;
+    levels_[k].blocks[(completed - 1) % levels_[k].count] = sum;
   }
+}
+
+SignalSeries SignalSeries::with_capacity(std::size_t capacity) const {
+  SignalSeries copy(capacity, std::max(begin(), end_ - std::min<std::uint64_t>(end_, capacity)));
+  for (std::uint64_t i = copy.first_; i < end_; ++i) copy.append((*this)[i]);
+  return copy;
 }
 
 Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
@@ -72,7 +83,7 @@ Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
       continue;
     }
     const Level& blocks = levels_[level - 1];
-    result = merge(result, blocks.blocks[(first >> shift) & blocks.mask]);
+    result = merge(result, blocks.blocks[(first >> shift) % blocks.count]);
     first += std::uint64_t{1} << shift;
   }
   return result;
@@ -108,6 +119,12 @@ void SignalLane::select(const std::vector<protocol::Signal>& signals) {
     return false;
   });
   derive(std::exchange(formulas_, {}));
+}
+
+void SignalLane::set_capacity(std::size_t capacity) {
+  capacity_ = capacity;
+  for (SignalSeries& series : series_) series = series.with_capacity(capacity);
+  for (Derived& each : derived_) each.series = each.series.with_capacity(capacity);
 }
 
 std::uint64_t SignalLane::begin() const {
@@ -171,14 +188,29 @@ const SignalSeries* SignalLane::find(const ScopeSignal& signal) const {
   return found == signals_.end() ? nullptr : &series_[static_cast<std::size_t>(found - signals_.begin())];
 }
 
-void SignalHistory::clear() {
-  shown_.restart({}, 0);
-  over_.restart({}, 0);
+void SignalHistory::clear(std::uint64_t first) {
+  first_ = first;
+  shown_.restart({}, first);
+  over_.restart({}, first);
 }
 
 void SignalHistory::derive(const std::vector<ScopeSignal>& formulas) {
   shown_.derive(formulas);
   over_.derive(formulas);
+  limit_memory();
+}
+
+void SignalHistory::limit_memory() {
+  constexpr std::size_t step = std::size_t{1} << 16;  // 3 s, so that the capacity rarely changes
+  // A sample, and its share of the blocks of 16, 256 and more samples.
+  constexpr double sample_bytes = sizeof(float) + static_cast<double>(sizeof(Extremes)) / (branching - 1);
+  constexpr auto samples_maximum = static_cast<std::size_t>(memory_maximum_bytes / sample_bytes);
+  const std::size_t width = std::max<std::size_t>(1, shown_.width() + over_.width());
+  const std::size_t capacity = std::min(capacity_maximum_, std::max(step, samples_maximum / width / step * step));
+  if (capacity == capacity_) return;
+  capacity_ = capacity;
+  shown_.set_capacity(capacity);
+  over_.set_capacity(capacity);
 }
 
 std::optional<std::uint64_t> SignalHistory::index_of(std::int64_t period) const {
@@ -208,12 +240,13 @@ void SignalHistory::append(const device::ScopeSamples& samples, const device::Sc
     over_.append_lost(*gap);
     if (samples.signals != shown_.signals()) shown_.select(samples.signals);
   } else {
-    shown_.restart(samples.signals, 0);
-    over_.restart({}, 0);
+    shown_.restart(samples.signals, first_);
+    over_.restart({}, std::exchange(first_, 0));
   }
   next_period_ = samples.first_period + static_cast<std::int64_t>(samples.count);
   const std::vector<protocol::Signal> over_signals = over == nullptr ? std::vector<protocol::Signal>{} : over->signals;
   if (over_signals != over_.signals()) over_.restart(over_signals, shown_.end());
+  limit_memory();
   shown_.append({samples.values.data(), samples.count * samples.signals.size()});
   if (over != nullptr) over_.append(over->values);
 }

@@ -27,16 +27,18 @@ struct Extremes {
 
 class SignalSeries {
  public:
-  /// `capacity` must be a power of two and at least 16. `first` is the index of the first appended sample.
+  /// `capacity` must be at least 16. `first` is the index of the first appended sample.
   explicit SignalSeries(std::size_t capacity, std::uint64_t first = 0);
 
   void append(float value);
+  /// Returns a copy of the newest samples.
+  SignalSeries with_capacity(std::size_t capacity) const;
 
   std::uint64_t end() const { return end_; }  ///< index of the next sample
   std::uint64_t begin() const { return std::max(first_, end_ > capacity_ ? end_ - capacity_ : 0); }
   /// Returns NaN for a sample before the first appended sample.
   float operator[](std::uint64_t index) const {
-    return index < first_ ? std::numeric_limits<float>::quiet_NaN() : samples_[index & (capacity_ - 1)];
+    return index < first_ ? std::numeric_limits<float>::quiet_NaN() : samples_[position_of(index)];
   }
 
   /// Returns the extremes of the stored samples in [first, last).
@@ -45,11 +47,15 @@ class SignalSeries {
  private:
   struct Level {
     std::unique_ptr<Extremes[]> blocks;
-    std::size_t mask;
+    std::size_t count;  ///< of the blocks in the ring buffer
   };
+  /// Position of a stored sample in the ring buffer, without a slow division.
+  std::size_t position_of(std::uint64_t index) const { return index - lap_ + (index < lap_ ? capacity_ : 0); }
+
   std::size_t capacity_;
   std::uint64_t first_;
   std::uint64_t end_;
+  std::uint64_t lap_;  ///< index of the newest sample at the start of the ring buffer
   std::unique_ptr<float[]> samples_;
   std::vector<Level> levels_;  // levels_[k]: blocks of 16^(k+1) samples
 };
@@ -60,6 +66,10 @@ class SignalLane {
   explicit SignalLane(std::size_t capacity) : capacity_(capacity) {}
 
   const std::vector<protocol::Signal>& signals() const { return signals_; }
+  /// Number of signals and formulas.
+  std::size_t width() const { return series_.size() + derived_.size(); }
+  /// Retains the newest samples.
+  void set_capacity(std::size_t capacity);
   /// Clears the samples and sets new signals. The next sample has the index `first`.
   void restart(std::vector<protocol::Signal> signals, std::uint64_t first);
   /// Sets new signals and retains the samples of the signals that are in both sets. The other signals start with the
@@ -94,22 +104,28 @@ class SignalLane {
   std::vector<float> inputs_;     ///< buffer for the inputs of a formula
 };
 
-/// History of the streamed signals and of an overlaid recording. Index 0 is the first received control period.
+/// History of the streamed signals and of an overlaid recording. Index 0 is the first received control period. The
+/// history of many signals is shorter, so that the memory is limited.
 class SignalHistory {
  public:
-  explicit SignalHistory(std::size_t capacity = std::size_t{1} << 21)
-      : capacity_(capacity), shown_(capacity), over_(capacity) {}
+  static constexpr std::size_t memory_maximum_bytes = 96 << 20;
+
+  explicit SignalHistory(std::size_t capacity_maximum = std::size_t{1} << 21)
+      : capacity_maximum_(capacity_maximum), capacity_(capacity_maximum), shown_(capacity_), over_(capacity_) {}
 
   /// Appends samples. If the signals have changed, retains the samples of the signals that are still selected. Stores
   /// lost samples as NaN. Clears the history if the board has restarted or if too many samples were lost. `over`
   /// contains the samples of the overlaid recording, or is null.
   void append(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
-  void clear();
+  /// Deletes all samples. The next sample has the index `first`.
+  void clear(std::uint64_t first = 0);
   /// Sets the formulas that are computed in addition to the signals.
   void derive(const std::vector<ScopeSignal>& formulas);
 
   /// Returns the index of a control period, which need not be in the history; empty before the first sample.
   std::optional<std::uint64_t> index_of(std::int64_t period) const;
+  /// Control period after the newest sample.
+  std::int64_t next_period() const { return next_period_; }
   std::size_t capacity() const { return capacity_; }
   std::uint64_t begin() const { return shown_.begin(); }
   std::uint64_t end() const { return shown_.end(); }
@@ -120,8 +136,12 @@ class SignalHistory {
   /// Returns the number of lost samples before `samples`, or an empty optional if the history must be cleared.
   std::optional<std::uint64_t> gap_before(const device::ScopeSamples& samples) const;
 
-  std::size_t capacity_;
+  /// Adapts the capacity to the number of signals.
+  void limit_memory();
+
+  std::size_t capacity_maximum_, capacity_;
   SignalLane shown_, over_;
+  std::uint64_t first_ = 0;       ///< index of the next sample after clear()
   std::int64_t next_period_ = 0;  ///< control period after the newest sample
 };
 

@@ -29,6 +29,12 @@ void Timeline::receive(const device::ScopeSamples& samples, const device::ScopeS
   history_.append(after_gap, over);
 }
 
+void Timeline::refill(const std::vector<ReceivedBlock>& blocks) {
+  if (blocks.empty()) return;
+  history_.clear(history_.index_of(blocks.front().samples.first_period).value_or(0));
+  for (const ReceivedBlock& block : blocks) history_.append(block.samples, block.over ? &*block.over : nullptr);
+}
+
 bool Timeline::would_overwrite(const device::ScopeSamples& samples) const {
   const double end = static_cast<double>(history_.end() + samples.lost_before + samples.count);
   return end - static_cast<double>(history_.capacity()) > std::max(0.0, paused_last_ - span_s_ * rate_Hz);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "host/companion/window/scope/scope_settings.hpp"
 #include "host/companion/window/scope/signal_history.hpp"
@@ -22,6 +23,12 @@ struct Stretch {
   std::uint64_t last_index() const { return last > 0.0 ? static_cast<std::uint64_t>(last) : 0; }
 };
 
+/// Samples of a recording, and the samples of the overlaid recording.
+struct ReceivedBlock {
+  device::ScopeSamples samples;
+  std::optional<device::ScopeSamples> over;
+};
+
 class Timeline {
  public:
   Timeline(double span_s, const TriggerSettings& trigger) : trigger_settings_(trigger), span_s_(span_s) {}
@@ -31,6 +38,8 @@ class Timeline {
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   /// Sets the formulas that are computed in addition to the received signals.
   void derive(const std::vector<ScopeSignal>& formulas) { history_.derive(formulas); }
+  /// Replaces the history by other signals of the same time. The displayed section does not move.
+  void refill(const std::vector<ReceivedBlock>& blocks);
   /// Clears the history. Call if the next samples do not directly follow the previous samples.
   void restart();
   const SignalHistory& history() const { return history_; }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "host/client/recording/recording.hpp"
+#include "host/client/recording/stored_recording.hpp"
 #include "host/client/recording/writer.hpp"
 
 #include "tests/temporary_directory.hpp"
@@ -104,4 +105,43 @@ TEST_CASE("an HDF5 recording can be opened by every program, whichever write its
   // While HDF5 splits a full node of 64 chunks, the column is unreadable. In this test HDF5 splits one node per column.
   const std::size_t columns = 2 + about().signals.size();
   CHECK(unreadable <= columns);
+}
+
+TEST_CASE("the overview of a killed writer shows only samples that are in the file") {
+  const tests::TemporaryDirectory directory;
+  const auto file = directory / "a.h5", copy = directory / "copy.h5";
+  constexpr std::size_t block = 32'768, blocks = 12;
+  Information about{.parameters = protocol::default_parameters(), .signals = {protocol::Signal::force_N}};
+  const auto writer = create(file, about);
+  std::size_t copies = 0, unreadable = 0, wrong = 0;
+  const auto check = [&] {
+    std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
+    ++copies;
+    try {
+      const auto recording = StoredRecording::open(copy);
+      std::vector<SampleRange> ranges;
+      for (std::size_t begin = 0; begin + 1024 <= recording.size(); begin += 1024)
+        ranges.push_back({begin, begin + 1024});
+      const std::size_t column = 0;
+      const auto bands = recording.bands({&column, 1}, ranges);
+      for (std::size_t i = 0; i < ranges.size(); ++i)
+        wrong += bands[i][0].minimum != static_cast<double>(ranges[i].begin) ||
+                 bands[i][0].maximum != static_cast<double>(ranges[i].end - 1);
+    } catch (const device::Error&) {
+      ++unreadable;
+    }
+  };
+  before_each_write = check;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    device::ScopeSamples samples{about.signals, static_cast<std::int64_t>(i * block), block, {}, 0};
+    for (std::size_t j = 0; j < block; ++j) samples.values.push_back(static_cast<float>(i * block + j));
+    writer->append(samples, {});
+    writer->flush();
+  }
+  writer->finish();
+  before_each_write = nullptr;
+  check();
+  CHECK(wrong == 0);
+  CHECK(copies > 100);
+  CHECK(unreadable * 20 <= copies);  // while HDF5 splits a full node of 64 chunks, as above
 }

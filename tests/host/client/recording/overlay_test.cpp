@@ -71,6 +71,15 @@ TEST_CASE("a mark that both hold aligns them") {
   CHECK(Overlay(base, over, "touch").compared_with(over.samples(0, 1)).values[0] == 20.0f);
 }
 
+TEST_CASE("an overlay returns only the selected signals") {
+  const Recording base = ramp("base", 100, 50), over = ramp("over", 500, 50);
+  Overlay overlay(over, base);
+  CHECK_FALSE(overlay.select(over.information.signals));
+  CHECK(overlay.select({}));
+  CHECK(overlay.compared_with(base.samples(0, 10)).values.empty());
+  CHECK(overlay.compared_with(base.samples(0, 10)).signals.empty());
+}
+
 TEST_CASE("an overlay retains gaps and holds sparse samples until the next sample") {
   const auto base = ramp("base", 0, 100);
   auto gap = ramp("gap", 0, 10);

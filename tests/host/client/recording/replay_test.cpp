@@ -98,6 +98,29 @@ TEST_CASE("after a seek, the replay returns the samples before the new position"
   CHECK(replay.position_s() == 0);
 }
 
+TEST_CASE("a replay returns the selected signals, also of samples that were already replayed") {
+  Replay replay(recorded({Signal::force_N, Signal::duty_1, Signal::supply_V}, {{100, 10'000}, {10'200, 10'000}}));
+  CHECK_FALSE(replay.select({Signal::supply_V, Signal::force_N, Signal::duty_1}));
+  CHECK(replay.select({Signal::supply_V, Signal::duty_2}));
+  replay.seek(0.6);
+  const auto passed = replay.advance(0, 0.2);
+  REQUIRE_FALSE(passed.blocks.empty());
+  CHECK(passed.blocks.front().signals == std::vector{Signal::supply_V});
+  CHECK(passed.blocks.front().values.at(0) == 8100.0f + 0.002f);
+  CHECK(replay.select({Signal::force_N, Signal::supply_V}));
+  const auto again = replay.between(10'090, 10'210);
+  REQUIRE(again.size() == 2);
+  CHECK(again[0].first_period == 10'090);
+  CHECK(again[0].count == 10);
+  CHECK(again[1].first_period == 10'200);
+  CHECK(again[1].lost_before == 100);
+  CHECK(again[1].count == 10);
+  CHECK(again[1].values.size() == 20);
+  CHECK(count_of(replay.advance(0, 0.2)) == 0);
+  CHECK(replay.select({}));  // at least one signal, because a block without signals has no samples
+  CHECK(replay.signals().size() == 1);
+}
+
 TEST_CASE("a gap of the recording is a gap of the replay") {
   Replay replay(recorded({Signal::force_N}, {{100, 10}, {130, 10}}));
   replay.play();

@@ -6,6 +6,7 @@
 
 #include "host/client/recording/signals.hpp"
 #include "host/lab/experiment/figures.hpp"
+#include "host/lab/experiment/summary.hpp"
 
 #include "tests/failure.hpp"
 #include "tests/system/image.hpp"
@@ -52,13 +53,39 @@ TEST_CASE("figures show mean and extremes of each millisecond") {
   auto& force_N = recording.columns[static_cast<std::size_t>(Signal::force_N)];
   for (std::size_t i = 0; i < 60; ++i) force_N[i] = static_cast<float>(i);
   recording.keep(0, 60);
-  const auto data = figure_data(recording, {2, 1});
+  const auto data = figure_data(recording, {2, 1}, {0, recording.duration_s()});
   REQUIRE(data.rows.size() == 3);
   CHECK(data.names[1] == "force_N");
   CHECK(data.rows[1].time_s == doctest::Approx(1.5e-3));
   CHECK(data.rows[1].bands[1].mean == doctest::Approx(29.5));
   CHECK(data.rows[1].bands[1].minimum == 20);
   CHECK(data.rows[1].bands[1].maximum == 39);
+}
+
+TEST_CASE("figures of a long contact have longer points, so that the data stays small") {
+  const auto recording = push();
+  const auto contact = contact_with(recording, {2, 1});
+  REQUIRE(contact);
+  CHECK(contact->from_s == doctest::Approx(0.3));
+  CHECK(contact->to_s == doctest::Approx(0.39995));
+  CHECK(figure_data(recording, {2, 1}, *contact).rows.size() == 100);
+  const auto data = figure_data(recording, {2, 1}, {0, 40});
+  CHECK(data.rows.size() == 77);  // points of 9 ms
+  CHECK(data.rows[1].time_s - data.rows[0].time_s == doctest::Approx(9e-3));
+}
+
+TEST_CASE("the first and the last contact are found in a long recording") {
+  auto recording = recording::Recording::without_samples({.signals = {Signal::penetration_z_m}});
+  constexpr std::size_t count = 300'000;
+  for (std::size_t i = 0; i < count; ++i) recording.periods.push_back(static_cast<std::int64_t>(i));
+  recording.columns[0].assign(count, 0.0f);
+  CHECK_FALSE(contact_with(recording, {2, 1}));
+  recording.columns[0][70'000] = -1e-4f;
+  recording.columns[0][200'000] = -2e-4f;
+  const auto contact = contact_with(recording, {2, 1});
+  REQUIRE(contact);
+  CHECK(contact->from_s == doctest::Approx(3.5));
+  CHECK(contact->to_s == doctest::Approx(10.0));
 }
 
 TEST_CASE("the sphere's distance is zero where its surface meets the wall") {
@@ -68,7 +95,7 @@ TEST_CASE("the sphere's distance is zero where its surface meets the wall") {
   const float touching_m =
       parameters[protocol::Parameter::box_minimum_z_m] + parameters[protocol::Parameter::sphere_radius_m];
   position_m.assign(position_m.size(), touching_m - 0.002f);
-  CHECK(figure_data(recording, {2, -1}).rows[0].bands[0].mean == doctest::Approx(2.0).epsilon(1e-3));
+  CHECK(figure_data(recording, {2, -1}, {0, 0.1}).rows[0].bands[0].mean == doctest::Approx(2.0).epsilon(1e-3));
 }
 
 TEST_CASE("gnuplot draws the four figures, each line in its colour") {

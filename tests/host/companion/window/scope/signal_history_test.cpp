@@ -141,3 +141,48 @@ TEST_CASE("a restart of the board clears the history, also with a change of the 
   CHECK(history.end() == 50);
   CHECK((*history.find(Signal::force_N))[0] == 3.0f);
 }
+
+TEST_CASE("many signals have a shorter history, so that the memory is limited, and retain their newest samples") {
+  using protocol::Signal;
+  window::SignalHistory history;
+  const std::size_t capacity_of_few = history.capacity();
+  CHECK(capacity_of_few > 100 * 20'000);
+  std::vector<Signal> few{Signal::force_N}, many;
+  for (std::size_t i = 0; i < 32; ++i) many.push_back(static_cast<Signal>(i));
+  history.append(samples_of(few, 0, 10, 1.0f));
+  CHECK(history.capacity() == capacity_of_few);
+  auto over = samples_of(many, 10, 1, 4.0f);
+  history.append(samples_of(many, 10, 1, 3.0f), &over);
+  const std::size_t samples = history.capacity() * 2 * many.size();
+  CHECK(samples * sizeof(float) < window::SignalHistory::memory_maximum_bytes);
+  CHECK(samples * sizeof(float) > window::SignalHistory::memory_maximum_bytes / 2);
+  CHECK((*history.find(Signal::force_N))[9] == 1.0f);
+  CHECK((*history.find(Signal::force_N))[10] == 3.0f);
+  history.append(samples_of(few, 11, 1, 5.0f));
+  CHECK(history.capacity() == capacity_of_few);
+  CHECK((*history.find(Signal::force_N))[9] == 1.0f);
+}
+
+TEST_CASE("a series of any capacity holds the extremes of its newest samples") {
+  for (const std::size_t capacity : {std::size_t{16}, std::size_t{100}, std::size_t{4095}, std::size_t{65'536}}) {
+    CAPTURE(capacity);
+    SignalSeries series(capacity);
+    const auto value = [](std::uint64_t i) { return static_cast<float>(i * 2'654'435'761u % 1000); };
+    for (std::uint64_t i = 0; i < 70'001; ++i) series.append(value(i));
+    for (const SignalSeries& each : {series.with_capacity(capacity), series.with_capacity(capacity / 2 + 8)}) {
+      std::size_t wrong = 0;
+      for (std::uint64_t first = each.begin(); first < each.end(); first += 1 + capacity / 7)
+        for (std::uint64_t last = first + 1; last <= each.end(); last += 1 + capacity / 5) {
+          float least = value(first), largest = least;
+          for (std::uint64_t i = first; i < last; ++i) {
+            least = std::min(least, value(i));
+            largest = std::max(largest, value(i));
+            wrong += each[i] != value(i);
+          }
+          wrong += each.extremes(first, last).minimum != least || each.extremes(first, last).maximum != largest;
+        }
+      CHECK(wrong == 0);
+      CHECK(each.end() - each.begin() <= capacity);
+    }
+  }
+}

@@ -47,6 +47,25 @@ TEST_CASE("a long picture rolls by whole parts of its span, so that it does not 
   CHECK(last > 50'001 - part);
 }
 
+TEST_CASE("other signals of the same time do not move a paused picture") {
+  Timeline timeline = with_samples(10'000);
+  timeline.pause(true);
+  timeline.drag(0.5);
+  receive(timeline, 500);
+  const Stretch before = timeline.stretch();
+  device::ScopeSamples other{{force, protocol::Signal::supply_V}, 4000, 6500, {}, 7};
+  for (std::size_t i = 0; i < other.count; ++i)
+    for (const float value : {1.0f, static_cast<float>(i)}) other.values.push_back(value);
+  timeline.refill({{other, std::nullopt}});
+  CHECK(timeline.stretch().first == before.first);
+  CHECK(timeline.stretch().last == before.last);
+  CHECK(timeline.history().begin() == 4000);
+  CHECK(timeline.history().end() == 10'500);
+  CHECK((*timeline.history().find(protocol::Signal::supply_V))[9000] == 5000.0f);
+  receive(timeline, 5);
+  CHECK(timeline.history().end() == 10'505);
+}
+
 TEST_CASE("a pause retains the picture, and the samples of the pause are visible after the pause") {
   Timeline timeline = with_samples(10'000);
   timeline.pause(true);
