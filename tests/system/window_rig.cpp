@@ -195,6 +195,17 @@ void WindowRig::set_keyboard_layout(const std::string& layout) {
   if (result.exit_code != 0) throw std::runtime_error("setxkbmap: " + result.err);
 }
 
+std::string Sight::in_menu(const std::string& item) const {
+  for (const auto& each : all.at("items").items())
+    if (each.key().starts_with("##Popup") && each.key().ends_with("/" + item)) return each.key();
+  return {};
+}
+
+void WindowRig::click_in_menu(const std::string& item) {
+  const auto sight = wait_until(item + " is in the menu", [&](const Sight& now) { return !now.in_menu(item).empty(); });
+  click(sight.in_menu(item));
+}
+
 void WindowRig::switch_force_on() {
   click("status/Switch force on");
   wait_until("the force is on", [](const Sight& sight) { return sight.state() == "active"; });

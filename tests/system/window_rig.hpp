@@ -49,6 +49,9 @@ struct Sight {
   std::string with_keyboard() const;
   /// Returns true if any text in the window contains `part`.
   bool says(const std::string& part) const;
+  /// Returns the complete name of an item in the open menu, because ImGui generates the name of a menu. Returns an empty
+  /// name without such an item.
+  std::string in_menu(const std::string& item) const;
 };
 
 class WindowRig {
@@ -70,6 +73,8 @@ class WindowRig {
   Sight look();
   /// Waits until a frame satisfies the condition, and throws after a long time limit.
   Sight wait_until(const std::string& what, const std::function<bool(const Sight&)>& condition);
+  /// Waits until an item is in the open menu, and clicks the item.
+  void click_in_menu(const std::string& item);
   Image picture();
   void picture(const std::string& file);
 

@@ -16,19 +16,6 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// ImGui generates the name of a menu.
-std::string in_menu(const Sight& sight, const std::string& name) {
-  for (const auto& each : sight.all.at("items").items())
-    if (each.key().starts_with("##Popup") && each.key().ends_with("/" + name)) return each.key();
-  return {};
-}
-
-void click_in_menu(WindowRig& rig, const std::string& name) {
-  const auto sight =
-      rig.wait_until(name + " is in the menu", [&](const Sight& now) { return !in_menu(now, name).empty(); });
-  rig.click(in_menu(sight, name));
-}
-
 std::string content_of(const std::string& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -123,7 +110,7 @@ TEST_CASE("statistics have units, and a plot is saved as values, drawing and pic
   rig.wait_until("the statistics have a unit", [](const Sight& now) { return !text_before(now, " mm").empty(); });
   const auto save = [&](const std::string& row, const std::string& name) {
     rig.click("scope/Position");
-    click_in_menu(rig, row);
+    rig.click_in_menu(row);
     const std::string file = directory.file(name);
     rig.enter("choose a file/path", file);
     rig.click("choose a file/Save");
@@ -140,7 +127,7 @@ TEST_CASE("statistics have units, and a plot is saved as values, drawing and pic
   CHECK(image.height > 90);
   CHECK(image.colours() > 10);
   rig.click("scope/Position");
-  click_in_menu(rig, "Copy statistics");
+  rig.click_in_menu("Copy statistics");
   rig.wait_until("it is copied", [](const Sight& now) { return now.says("Copied the statistics."); });
 }
 
@@ -148,19 +135,19 @@ TEST_CASE("the menu of a plot lists the plotted signals first, and fixes the ran
   WindowRig rig({"--flat-colours", "--layout", "contact"});
   rig.click("scope/Position");
   const auto menu =
-      rig.wait_until("the menu is open", [](const Sight& now) { return !in_menu(now, "Fixed y range").empty(); });
+      rig.wait_until("the menu is open", [](const Sight& now) { return !now.in_menu("Fixed y range").empty(); });
   CHECK(menu.says("Plotted"));
-  CHECK_FALSE(in_menu(menu, "position_x_m").empty());
-  CHECK(menu.item(in_menu(menu, "position_x_m")).y < menu.item(in_menu(menu, "search")).y);
-  click_in_menu(rig, "Fixed y range");
+  CHECK_FALSE(menu.in_menu("position_x_m").empty());
+  CHECK(menu.item(menu.in_menu("position_x_m")).y < menu.item(menu.in_menu("search")).y);
+  rig.click_in_menu("Fixed y range");
   const auto fixed =
-      rig.wait_until("the fields are there", [](const Sight& now) { return !in_menu(now, "range minimum").empty(); });
-  CHECK_FALSE(in_menu(fixed, "range maximum").empty());
-  rig.enter(in_menu(fixed, "range maximum"), "250");
+      rig.wait_until("the fields are there", [](const Sight& now) { return !now.in_menu("range minimum").empty(); });
+  CHECK_FALSE(fixed.in_menu("range maximum").empty());
+  rig.enter(fixed.in_menu("range maximum"), "250");
   rig.press_key("Return");
-  rig.enter(in_menu(fixed, "range minimum"), "-50");
+  rig.enter(fixed.in_menu("range minimum"), "-50");
   rig.click(rig.look().item("scene/view").at(0.9, 0.2));  // a click elsewhere confirms the number and closes the menu
-  rig.wait_until("the menu is closed", [](const Sight& now) { return in_menu(now, "Fixed y range").empty(); });
+  rig.wait_until("the menu is closed", [](const Sight& now) { return now.in_menu("Fixed y range").empty(); });
   CHECK(rig.look().all.at("plot_ranges").at("Position") == nlohmann::json{-0.05, 0.25});
 }
 

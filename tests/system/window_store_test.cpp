@@ -1,9 +1,11 @@
 // Tests the display of unstored values and of values that differ after a reconnection.
 #include <doctest/doctest.h>
 
+#include <fstream>
 #include <string>
 
 #include "tests/system/window_rig.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -165,8 +167,37 @@ TEST_CASE("a guide offers to store its changes after they are applied") {
     return now.has("guides/Apply");
   });
   CHECK_FALSE(rig.look().has("guides/Store on board"));
+  const TemporaryDirectory directory;
+  const auto save = [&](const std::string& row, const std::string& name) {
+    rig.click("guides/Save");
+    rig.click_in_menu(row);
+    const std::string file = directory.file(name);
+    rig.enter("choose a file/path", file);
+    rig.click("choose a file/Save");
+    rig.wait_until(name + " is saved", says("Saved " + file));
+    return file;
+  };
+  std::ifstream values(save("Save values (CSV)", "steps.csv"));
+  std::string names;
+  std::getline(values, names);
+  CHECK(names.starts_with("time_ms,motor_1_before_A,"));
+  CHECK(read_png(save("Save picture (PNG)", "steps.png")).colours() > 10);
   rig.click("guides/Apply");
   rig.wait_until("it offers to store", says("The values are lost at power-off unless you store them."));
   rig.click("guides/Store on board");
   rig.wait_until("it is stored", says("The values are stored on the board."));
+}
+
+TEST_CASE(
+    "without a motor the force has no effect, and the scene has a button for the guide that measures the motors") {
+  WindowRig rig;
+  rig.control.inject({.fault = "motor_open", .of = "1"});
+  restart(rig);
+  rig.click("returned/Keep new values");
+  rig.click("status/Switch force on");
+  rig.wait_until("the reason is shown", says("No motor receives current: a motor is missing or unknown"));
+  rig.click("scene/Measure motors");
+  rig.wait_until("the guide waits", says("The guide waits until you press Confirm."));
+  CHECK(rig.look().says("Current-loop tuning"));
+  rig.wait_until("the force is off", [](const Sight& now) { return now.state() == "ready"; });
 }

@@ -13,6 +13,7 @@
 #include "host/companion/window/frame/keyboard.hpp"
 #include "host/companion/window/frame/picture_digest.hpp"
 #include "host/companion/window/frame/widgets.hpp"
+#include "host/companion/window/plot/plot_saver.hpp"
 
 namespace inkwell::window {
 
@@ -244,6 +245,11 @@ void Companion::take_next_step(NextAction action, StatusBarOutcome& outcome) {
   switch (action) {
     case NextAction::switch_force_on: outcome.switch_force_on = true; break;
     case NextAction::into_inkwell: hand_->reference_encoders(); break;
+    case NextAction::measure_motors:
+      desk_.session().send(protocol::Command::disable_force);
+      keyboard_.go_to(column_.show("Guides"));
+      column_.start_guide("current-loop");
+      break;
     case NextAction::show_guides: keyboard_.go_to(column_.show("Guides")); break;
     case NextAction::show_log: keyboard_.go_to(column_.show("Log")); break;
   }
@@ -315,9 +321,21 @@ void Companion::draw_scope(const WindowLayout& layout) {
 void Companion::judge_motion() {
   const bool scene_moves = differs_visibly(drawn_pose_, pose_);
   const bool is_updating = updater_.sight().phase == FirmwareUpdater::Phase::runs;
-  is_moving_ = scene_moves || is_updating || scope_pane_.is_saving() || fonts_.is_loading() || column_.is_moving() ||
-               replay_bar_.is_playing() || (settings_.scope_is_shown && scope_pane_.take_motion());
+  is_moving_ = scene_moves || is_updating || scope_pane_.saver().is_saving() || fonts_.is_loading() ||
+               column_.is_moving() || replay_bar_.is_playing() ||
+               (settings_.scope_is_shown && scope_pane_.take_motion());
   if (scene_moves) drawn_pose_ = pose_;
+}
+
+std::optional<Box> Companion::wanted_picture() const {
+  if (const auto wanted = scope_pane_.saver().wanted_picture()) return wanted;
+  const PlotSaver* saver = column_.plot_saver();
+  return saver == nullptr ? std::nullopt : saver->wanted_picture();
+}
+
+void Companion::take_picture(Pixels pixels) {
+  PlotSaver& saver = scope_pane_.saver().wanted_picture() ? scope_pane_.saver() : *column_.plot_saver();
+  saver.take_picture(std::move(pixels));
 }
 
 bool Companion::needs_frame() const {

@@ -42,8 +42,8 @@ class Companion final : public FrameContent {
   bool is_over() const override { return wants_virtual_board_; }
   Box canvas() const override;
   std::uint64_t canvas_digest() const override;
-  std::optional<Box> wanted_picture() const override { return scope_pane_.wanted_picture(); }
-  void take_picture(Pixels pixels) override { scope_pane_.take_picture(std::move(pixels)); }
+  std::optional<Box> wanted_picture() const override;
+  void take_picture(Pixels pixels) override;
   Colour ground() const override { return style_.palette->pane; }
   void paint(const Canvas& canvas) override;
   nlohmann::json inspect() const override;

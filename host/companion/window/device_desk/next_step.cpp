@@ -16,6 +16,14 @@ NextStep for_unreferenced(bool has_hand) {
           NextAction::show_guides, "Show guides"};
 }
 
+std::optional<NextStep> for_missing_motors(const device::Pose& pose) {
+  if (!protocol::force_is_on(pose.state) || !protocol::is_reached(pose.limits, protocol::Limit::motors))
+    return std::nullopt;
+  return NextStep{"No motor receives current: a motor is missing or unknown",
+                  "Connect all motors. The guide measures the motors, and then proposes to confirm them.",
+                  NextAction::measure_motors, "Measure motors"};
+}
+
 }  // namespace
 
 std::optional<NextStep> next_step_of(const DeviceView& view, const NextStepSituation& situation) {
@@ -36,7 +44,7 @@ std::optional<NextStep> next_step_of(const DeviceView& view, const NextStepSitua
       return NextStep{"The board starts its boot loader",
                       "The motors are off. The window offers the firmware when the boot loader runs.",
                       NextAction::show_log, "Show log"};
-    default: return std::nullopt;
+    default: return for_missing_motors(*view.pose);
   }
 }
 

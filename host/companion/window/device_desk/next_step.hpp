@@ -9,7 +9,7 @@
 
 namespace inkwell::window {
 
-enum class NextAction : std::uint8_t { switch_force_on, into_inkwell, show_guides, show_log };
+enum class NextAction : std::uint8_t { switch_force_on, into_inkwell, measure_motors, show_guides, show_log };
 
 struct NextStep {
   std::string title;
@@ -25,7 +25,7 @@ struct NextStepSituation {
   std::string force_waits;  ///< a pane's reason why the force must stay off; empty: no reason
 };
 
-/// Returns the next step; empty while the force is on, during a replay, without a device, and in a fault. A fault has a
+/// Returns the next step; empty while the force acts, during a replay, without a device, and in a fault. A fault has a
 /// banner, and a missing device has a separate card.
 std::optional<NextStep> next_step_of(const DeviceView& view, const NextStepSituation& situation);
 

@@ -20,6 +20,7 @@
 #include "host/companion/window/frame/widgets.hpp"
 #include "host/companion/window/panes/pane.hpp"
 #include "host/companion/window/plot/plot.hpp"
+#include "host/companion/window/plot/plot_saver.hpp"
 
 #include "host/companion/window/panes/store_bar.hpp"
 
@@ -36,6 +37,19 @@ Colour outcome_colour(Phase phase, const Palette& palette) {
   }
 }
 
+constexpr const char* step_response = "Step response";
+
+/// Returns the displayed part of the curves.
+PlotTable guides_table(const std::vector<guides::Curve>& curves, const PlotArea& area) {
+  std::vector<NamedPoints> lines;
+  for (const guides::Curve& curve : curves) lines.push_back({curve.name + " A", curve.points});
+  PlotTable table = table_of(lines, area.x);
+  table.title = step_response;
+  table.x_name = "time_ms";
+  table.y_range = area.y;
+  return table;
+}
+
 class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
@@ -50,13 +64,16 @@ class GuidesPane final : public Pane {
   void cancel() override;
   /// Reserves the scope stream while the guide needs signals.
   PaneStream stream() const override { return {signals_, false}; }
-  bool is_moving() const override { return is_running(); }
+  bool is_moving() const override { return is_running() || saver_.is_saving(); }
+  PlotSaver* plot_saver() override { return &saver_; }
+  void start_guide(std::string_view name) override;
   std::string why_force_waits() const override {
     return is_running() ? "A guide runs and decides about the currents. Finish or cancel the guide first." : "";
   }
 
  private:
   void start(guides::Guide guide);
+  guides::Choices choices() const;
   bool is_running() const { return guide_ && !guide_->is_over(); }
   void draw_offers(const Style& style);
   void draw_bandwidth(const Style& style);
@@ -82,6 +99,7 @@ class GuidesPane final : public Pane {
   std::optional<guides::SimulatedUser> user_;
   std::string user_problem_;
   std::vector<protocol::Signal> signals_;
+  PlotSaver saver_;
 };
 
 guides::SessionPort GuidesPane::port() {
@@ -101,6 +119,18 @@ void GuidesPane::start(guides::Guide guide) {
   } catch (const device::Error& error) {
     user_problem_ = error.what();
   }
+}
+
+void GuidesPane::start_guide(std::string_view name) {
+  if (is_running()) return;
+  for (const guides::Offer* offer : guides::all_guides())
+    if (offer->name == name) start(offer->start(choices()));
+}
+
+guides::Choices GuidesPane::choices() const {
+  guides::Choices choices;
+  choices.current_loop.bandwidth_Hz = static_cast<double>(bandwidth_Hz_);
+  return choices;
 }
 
 void GuidesPane::run_simulated_user() {
@@ -147,6 +177,7 @@ void GuidesPane::draw(const PaneFrame& frame) {
       }
     }
     ImGui::EndChild();
+    saver_.draw("guide message", ImGui::GetCursorScreenPos().y, style);
     draw_buttons(style);
   }
 }
@@ -162,9 +193,7 @@ void GuidesPane::draw_offers(const Style& style) {
   ImGui::BeginDisabled(!connected);
   for (const guides::Offer* offer : guides::all_guides()) {
     if (button(std::string(offer->title).c_str(), {ImGui::GetContentRegionAvail().x, style.points(30)})) {
-      guides::Choices choices;
-      choices.current_loop.bandwidth_Hz = static_cast<double>(bandwidth_Hz_);
-      start(offer->start(choices));
+      start(offer->start(choices()));
     }
     wrapped_text(style.palette->text_quiet, offer->help);
     ImGui::Dummy({0, style.points(4)});
@@ -288,7 +317,12 @@ void GuidesPane::draw_curves(const Style& style) {
       last_ms = std::max(last_ms, time_ms);
     }
   ImGui::Dummy({0, style.points(6)});
-  text(style.fonts.strong, palette.text, "Step response");
+  ImGui::AlignTextToFramePadding();
+  text(style.fonts.strong, palette.text, step_response);
+  const float save_width = style.points(64);
+  ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - save_width);
+  if (button("Save##plot", {save_width, 0})) ImGui::OpenPopup("plot menu");
+  help_on_hover("", "Saves the plot as a picture, a drawing or values.", style);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float row_height = style.fonts.caption->FontSize + ImGui::GetStyle().ItemSpacing.y,
               names_height = static_cast<float>((curves.size() + 1) / 2) * row_height + style.points(6);
@@ -307,6 +341,11 @@ void GuidesPane::draw_curves(const Style& style) {
     if (i % 2 == 1) ImGui::SameLine(0.5f * width);
     text(style.fonts.caption, palette.lines[i % palette.lines.size()], curves[i].name);
   }
+  saver_.set_areas({{corner.x, corner.y, corner.x + width, ImGui::GetCursorScreenPos().y}});
+  if (!ImGui::BeginPopup("plot menu")) return;
+  if (const auto format = choose_plot_format())
+    saver_.ask(*format, 0, step_response, [&] { return guides_table(curves, area); });
+  ImGui::EndPopup();
 }
 
 void GuidesPane::draw_buttons(const Style& style) {

@@ -29,6 +29,8 @@
 
 namespace inkwell::window {
 
+class PlotSaver;
+
 /// Constructor argument of a pane. All referenced objects outlive the pane.
 struct PaneSurroundings {
   DeviceDesk& desk;
@@ -108,6 +110,10 @@ class Pane {
   virtual std::string why_force_waits() const { return {}; }
   /// Returns null for all panes except the pane that records.
   virtual RecordingControls* recording_controls() { return nullptr; }
+  /// Returns null for a pane without plots.
+  virtual PlotSaver* plot_saver() { return nullptr; }
+  /// Starts the guide with this name; only the pane of the guides has guides.
+  virtual void start_guide(std::string_view) {}
   /// Reserves the scope stream, for example during a guide or a recording.
   virtual PaneStream stream() const { return {}; }
   /// Returns a short state text for the tab; empty if the pane is idle.

@@ -114,6 +114,10 @@ std::string PaneColumn::show(std::string_view title) {
   return show(static_cast<std::size_t>(found - panes_.begin()));
 }
 
+void PaneColumn::start_guide(std::string_view name) {
+  for (const auto& pane : panes_) pane->start_guide(name);
+}
+
 bool PaneColumn::is_moving() const {
   return std::ranges::any_of(panes_, [](const auto& pane) { return pane->is_moving(); });
 }

@@ -29,6 +29,10 @@ class PaneColumn {
   bool scope_is_free(const std::vector<protocol::Signal>& scope_signals) const {
     return stream(scope_signals).feeds_scope;
   }
+  /// Starts a guide. Show the pane of the guides, because the guide waits for the user.
+  void start_guide(std::string_view name);
+  /// Returns the saver of the shown pane; null for a pane without plots.
+  PlotSaver* plot_saver() const { return panes_[shown_]->plot_saver(); }
   /// Shows the pane with this title. Returns the pane's name for the keyboard focus.
   std::string show(std::string_view title);
 

@@ -6,6 +6,7 @@
 
 #include "host/companion/window/frame/inspection.hpp"
 #include "host/companion/window/frame/widgets.hpp"
+#include "host/companion/window/plot/plot_saver.hpp"
 #include "protocol/signals.hpp"
 
 #include "host/companion/window/scope/legend.hpp"
@@ -102,9 +103,10 @@ PlotMenuChoice draw_plot_menu(ScopePlot& plot, std::span<const Formula> formulas
     if (ImGui::Selectable(label)) choice = offered;
     note_item(label);
   };
-  offer("Save picture (PNG)", PlotMenuChoice::save_png);
-  offer("Save drawing (SVG)", PlotMenuChoice::save_svg);
-  offer("Save values (CSV)", PlotMenuChoice::save_csv);
+  if (const auto format = choose_plot_format())
+    choice = *format == PlotFormat::png   ? PlotMenuChoice::save_png
+             : *format == PlotFormat::svg ? PlotMenuChoice::save_svg
+                                          : PlotMenuChoice::save_csv;
   offer("Copy statistics", PlotMenuChoice::copy_statistics);
   if (may_be_removed) offer("Remove this plot", PlotMenuChoice::remove);
   ImGui::Separator();

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "host/companion/window/plot/plot.hpp"
-#include "host/companion/window/scope/plot_export.hpp"
+#include "host/companion/window/plot/plot_export.hpp"
 #include "host/companion/window/scope/scope_layout.hpp"
 #include "host/companion/window/scope/timeline.hpp"
 

@@ -9,18 +9,16 @@
 
 #include <fmt/format.h>
 
-#include "host/companion/window/frame/background_task.hpp"
-#include "host/companion/window/frame/file_chooser.hpp"
 #include "host/companion/window/frame/imgui_versions.hpp"
 #include "host/companion/window/frame/inspection.hpp"
 #include "host/companion/window/frame/keyboard.hpp"
 #include "host/companion/window/frame/widgets.hpp"
+#include "host/companion/window/plot/plot_saver.hpp"
 #include "protocol/reports.hpp"
 
 #include "host/companion/window/scope/cursors.hpp"
 #include "host/companion/window/scope/layout_menu.hpp"
 #include "host/companion/window/scope/legend.hpp"
-#include "host/companion/window/scope/plot_export.hpp"
 #include "host/companion/window/scope/plot_menu.hpp"
 #include "host/companion/window/scope/plot_view.hpp"
 #include "host/companion/window/scope/signal_list.hpp"
@@ -55,28 +53,7 @@ std::string statistics_text_of(const ScopePlot& plot, const PlotFrame& frame) {
   return lines;
 }
 
-/// Returns a message about a written file.
-std::string written_text(const std::filesystem::path& file) { return fmt::format("Saved {}.", file.string()); }
-
 }  // namespace
-
-/// State of the export of a plot.
-struct PlotExport {
-  enum class Format : std::uint8_t { png, svg, csv };
-
-  Format format = Format::png;
-  FileChooser chooser;
-  PlotTable table;                               ///< values at the time of the choice
-  std::size_t plot = 0;                          ///< index of the plot
-  std::optional<std::filesystem::path> picture;  ///< picture that is requested from the frame loop
-  int frames_to_wait = 0;                        ///< until the dialog has disappeared from the screen
-  std::vector<Box> plots;                        ///< areas of the plots in the last frame
-  BackgroundTask writer;
-  std::filesystem::path file;  ///< last file
-  std::string message;         ///< empty: no message
-  bool is_error = false;
-  double message_since_s = 0.0;
-};
 
 ScopePane::ScopePane(const ScopeSettings& settings)
     : timeline_(settings.span_s, settings.trigger),
@@ -84,7 +61,7 @@ ScopePane::ScopePane(const ScopeSettings& settings)
       layout_menu_(std::make_unique<LayoutMenu>(settings.own_layouts)),
       cursors_(std::make_unique<Cursors>()),
       signal_list_(std::make_unique<SignalList>()),
-      export_(std::make_unique<PlotExport>()) {}
+      saver_(std::make_unique<PlotSaver>()) {}
 
 ScopePane::~ScopePane() = default;
 
@@ -113,7 +90,7 @@ void ScopePane::draw(ImVec2 origin, ImVec2 size, const Style& style, bool is_rep
   PlotFrame frame{style, timeline_, timeline_.stretch(), *cursors_, with_statistics_, judged_end_, has_motion_};
   draw_plots(frame);
   judged_end_ = timeline_.history().end();
-  draw_export(frame, origin.y + size.y - style.points(8));
+  saver_->draw("scope message", origin.y + size.y - style.points(8), style);
   end_pane();
 }
 
@@ -160,13 +137,14 @@ void ScopePane::draw_plots(PlotFrame& frame) {
   const auto rows_in_sight = static_cast<float>(std::clamp(rows_fitting, 1, rows));
   const float height = (room.y - gap.y * (rows_in_sight - 1.0f)) / rows_in_sight;
   std::optional<int> removed;
-  export_->plots.clear();
+  std::vector<Box> areas;
   for (int i = 0; i < count; ++i) {
     const ImVec2 corner{origin.x + static_cast<float>(i % columns) * (width + gap.x),
                         origin.y + static_cast<float>(i / columns) * (height + gap.y)};
-    export_->plots.push_back({corner.x, corner.y, corner.x + width, corner.y + height});
+    areas.push_back({corner.x, corner.y, corner.x + width, corner.y + height});
     if (draw_plot(static_cast<std::size_t>(i), corner, {width, height}, frame)) removed = i;
   }
+  saver_->set_areas(std::move(areas));
   if (removed) layout_.plots.erase(layout_.plots.begin() + *removed);
   ImGui::EndChild();
 }
@@ -215,75 +193,19 @@ void ScopePane::carry_out(PlotMenuChoice choice, std::size_t index, const PlotFr
   if (choice == PlotMenuChoice::none || choice == PlotMenuChoice::remove) return;
   if (choice == PlotMenuChoice::copy_statistics) {
     ImGui::SetClipboardText(statistics_text_of(plot, frame).c_str());
-    export_->message = "Copied the statistics.";
-    export_->is_error = false;
-    export_->message_since_s = ImGui::GetTime();
+    saver_->show("Copied the statistics.");
     return;
   }
-  if (export_->writer.is_running()) return;
-  export_->format = choice == PlotMenuChoice::save_png   ? PlotExport::Format::png
-                    : choice == PlotMenuChoice::save_svg ? PlotExport::Format::svg
-                                                         : PlotExport::Format::csv;
-  export_->plot = index;
-  if (export_->format != PlotExport::Format::png) export_->table = views_[index]->table(frame);
-  static constexpr std::array<const char*, 3> endings{".png", ".svg", ".csv"};
-  const char* ending = endings[static_cast<std::size_t>(export_->format)];
-  export_->chooser.ask({.title = "Save the plot",
-                        .help = export_->format == PlotExport::Format::csv
-                                    ? "The file contains all displayed values, with the names and units of recordings."
-                                    : "The file contains the displayed section.",
-                        .button = "Save",
-                        .endings = {ending},
-                        .is_new_file = true,
-                        .suggestion = (plot.title.empty() ? std::string("plot") : plot.title) + ending});
-}
-
-void ScopePane::draw_export(const PlotFrame& frame, float bottom) {
-  PlotExport& state = *export_;
-  const Style& style = frame.style;
-  if (state.frames_to_wait > 0) --state.frames_to_wait;
-  if (const auto chosen = state.chooser.draw(style)) {
-    state.file = *chosen;
-    if (state.format == PlotExport::Format::png) {
-      state.picture = *chosen;
-      state.frames_to_wait = 3;
-    } else {
-      state.writer.start(
-          [file = *chosen, table = std::move(state.table), is_csv = state.format == PlotExport::Format::csv] {
-            return write_file(file, is_csv ? csv_of(table) : svg_of(table, light_palette));
-          });
-    }
-  }
-  if (const auto result = state.writer.take_result()) {
-    state.is_error = !result->empty();
-    state.message = state.is_error ? *result : written_text(state.file);
-    state.message_since_s = ImGui::GetTime();
-  }
-  constexpr double shown_s = 6.0;
-  if (!state.is_error && ImGui::GetTime() - state.message_since_s > shown_s) state.message.clear();
-  if (state.message.empty()) return;
-  if (message_at_bottom("scope message", bottom, state.is_error ? style.palette->caution : style.palette->outline,
-                        state.message, style))
-    state.message.clear();
+  const PlotFormat format = choice == PlotMenuChoice::save_png   ? PlotFormat::png
+                            : choice == PlotMenuChoice::save_svg ? PlotFormat::svg
+                                                                 : PlotFormat::csv;
+  saver_->ask(format, index, plot.title.empty() ? "plot" : plot.title, [&] { return views_[index]->table(frame); });
 }
 
 std::vector<std::pair<std::string, AxisRange>> ScopePane::drawn_ranges() const {
   std::vector<std::pair<std::string, AxisRange>> ranges;
   for (const auto& view : views_) ranges.emplace_back(view->plot().title, view->drawn_y());
   return ranges;
-}
-
-std::optional<Box> ScopePane::wanted_picture() const {
-  if (!export_->picture || export_->frames_to_wait > 0 || export_->plot >= export_->plots.size()) return std::nullopt;
-  return export_->plots[export_->plot];
-}
-
-bool ScopePane::is_saving() const { return export_->picture || export_->writer.is_running(); }
-
-void ScopePane::take_picture(Pixels pixels) {
-  export_->writer.start([file = *std::exchange(export_->picture, std::nullopt), pixels = std::move(pixels)] {
-    return write_png(file, pixels);
-  });
 }
 
 void ScopePane::take_dropped_signal(ScopePlot& plot) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "host/companion/window/frame/picture_changes.hpp"
-#include "host/companion/window/frame/pixels.hpp"
 #include "host/companion/window/frame/style.hpp"
 #include "host/companion/window/plot/plot_axis.hpp"
 #include "host/companion/window/scope/scope_settings.hpp"
@@ -21,7 +20,7 @@ class Cursors;
 class LayoutMenu;
 class SignalList;
 class PlotView;
-struct PlotExport;
+class PlotSaver;
 enum class PlotMenuChoice : std::uint8_t;
 struct PlotArea;
 struct PlotFrame;
@@ -50,12 +49,8 @@ class ScopePane {
   void resume_after_fault() {
     if (timeline_.is_frozen_at_fault()) timeline_.pause(false);
   }
-  /// Returns the area of a plot that must be saved as a picture; empty without a request. The frame must be drawn.
-  std::optional<Box> wanted_picture() const;
-  /// Saves the requested picture in the background.
-  void take_picture(Pixels pixels);
-  /// Returns true while a file is written or a picture is requested.
-  bool is_saving() const;
+  PlotSaver& saver() { return *saver_; }
+  const PlotSaver& saver() const { return *saver_; }
   /// Returns the drawn y range of each plot by its title, for inspections.
   std::vector<std::pair<std::string, AxisRange>> drawn_ranges() const;
   double span_s() const { return timeline_.span_s(); }
@@ -79,7 +74,6 @@ class ScopePane {
   void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
   /// Carries out an action of the plot's menu, except its removal.
   void carry_out(PlotMenuChoice choice, std::size_t index, const PlotFrame& frame);
-  void draw_export(const PlotFrame& frame, float bottom);
   /// Returns true if the user removes the plot.
   bool draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFrame& frame);
 
@@ -90,7 +84,7 @@ class ScopePane {
   std::unique_ptr<Cursors> cursors_;
   std::unique_ptr<SignalList> signal_list_;
   bool with_statistics_ = false;
-  std::unique_ptr<PlotExport> export_;
+  std::unique_ptr<PlotSaver> saver_;
   bool has_motion_ = false;
   std::uint64_t judged_end_ = 0;  ///< end of the history in the previous frame
 };

@@ -32,6 +32,19 @@ TEST_CASE("every state without force except fault has a next step with a button,
   }
 }
 
+TEST_CASE("a force without motor current has a next step, which starts the guide for the motors") {
+  DeviceView view = in_state(State::limited);
+  CHECK_FALSE(next_step_of(view, {}).has_value());
+  view.pose->limits = static_cast<std::uint8_t>(protocol::Limit::motors) & 127u;
+  const auto step = next_step_of(view, {});
+  REQUIRE(step.has_value());
+  CHECK(step->action == NextAction::measure_motors);
+  CHECK_FALSE(step->reason.empty());
+  CHECK_FALSE(next_step_of(view, {.is_replay = true}).has_value());
+  view.pose->state = State::fault;
+  CHECK_FALSE(next_step_of(view, {}).has_value());
+}
+
 TEST_CASE("with an unknown position, the simulated hand offers to put the stylus into the inkwell") {
   const auto simulated = next_step_of(in_state(State::unreferenced), {.has_hand = true});
   REQUIRE(simulated.has_value());

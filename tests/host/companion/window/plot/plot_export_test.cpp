@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "host/companion/window/scope/plot_export.hpp"
+#include "host/companion/window/plot/plot_export.hpp"
 
 using namespace inkwell::window;
 
@@ -27,6 +27,20 @@ PlotTable table_of(std::size_t samples) {
 }
 
 }  // namespace
+
+TEST_CASE("lines with points at different times become columns of one table") {
+  const auto table = table_of({{"motor 1, before A", {{-1.0, 5.0}, {0.05, 1.0}, {0.1, 2.0}}},
+                               {"motor 2, after A", {{0.1 + 1e-12, 3.0}, {0.15, 4.0}, {9.0, 7.0}}}},
+                              {-0.5, 1.0});
+  CHECK(table.names == std::vector<std::string>{"motor_1_before_A", "motor_2_after_A"});
+  REQUIRE(table.x.size() == 3);
+  CHECK(table.x[1] == doctest::Approx(0.1));
+  CHECK(table.columns[0][1] == 2.0f);
+  CHECK(table.columns[1][1] == 3.0f);
+  CHECK(std::isnan(table.columns[0][2]));
+  CHECK(std::isnan(table.columns[1][0]));
+  CHECK(table.columns[1][2] == 4.0f);
+}
 
 TEST_CASE("the CSV file of a plot has the names, and an empty field for a lost sample") {
   CHECK(csv_of(table_of(4)) == "time_s,force_x_N,force_y_N\n0,0.25,0.5\n0.25,0.25,0.5\n0.5,0.25,\n0.75,0.25,0.5\n");

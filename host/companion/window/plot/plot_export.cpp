@@ -1,9 +1,11 @@
-#include "host/companion/window/scope/plot_export.hpp"
+#include "host/companion/window/plot/plot_export.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -119,6 +121,32 @@ void add_line(std::string& svg, const PlotTable& table, const std::vector<float>
 }
 
 }  // namespace
+
+PlotTable table_of(const std::vector<NamedPoints>& lines, const AxisRange& x_range) {
+  constexpr double step = 1e-6;  // equal x of several lines may differ by rounding errors
+  std::map<long long, std::size_t> rows;
+  for (const NamedPoints& line : lines)
+    for (const auto& [x, y] : line.points)
+      if (x >= x_range.minimum && x <= x_range.maximum) rows.emplace(std::llround(x / step), 0);
+  PlotTable table;
+  table.x_range = x_range;
+  for (auto& [key, row] : rows) {
+    row = table.x.size();
+    table.x.push_back(static_cast<double>(key) * step);
+  }
+  for (const NamedPoints& line : lines) {
+    std::string& name = table.names.emplace_back();
+    for (const char character : line.name) {
+      const bool is_part = std::isalnum(static_cast<unsigned char>(character)) != 0;
+      if (is_part || (!name.empty() && name.back() != '_')) name += is_part ? character : '_';
+    }
+    auto& column = table.columns.emplace_back(table.x.size(), std::nanf(""));
+    for (const auto& [x, y] : line.points)
+      if (const auto found = rows.find(std::llround(x / step)); found != rows.end())
+        column[found->second] = static_cast<float>(y);
+  }
+  return table;
+}
 
 std::string csv_of(const PlotTable& table) {
   std::string csv = table.x_name;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/companion/window/frame/palette.hpp"
@@ -21,6 +22,16 @@ struct PlotTable {
   AxisRange x_range{0, 1};
   AxisRange y_range{0, 1};
 };
+
+/// A line of a plot.
+struct NamedPoints {
+  std::string name;
+  std::vector<std::pair<double, double>> points;  ///< x increases
+};
+
+/// Returns the points of all lines in a range of x. A line without a point at an x of another line has the value NaN
+/// there. The names become column names with letters, digits and "_".
+PlotTable table_of(const std::vector<NamedPoints>& lines, const AxisRange& x_range);
 
 /// Returns a header line and a line per value. A lost sample is an empty field.
 std::string csv_of(const PlotTable& table);
