@@ -86,6 +86,33 @@ TEST_CASE("a recording holds marks, buttons, shapes, parameter changes and force
   CHECK(period_of(content, "force", "The force is off.") > mark_period);
 }
 
+TEST_CASE("a recording holds the parameter changes of other programs") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("other.csv");
+  const Board board;
+  const VirtualArm virtual_arm{board.address}, other{board.address};
+  inkwell_arm* const arm = virtual_arm.arm;
+  select_signals(arm);
+  const auto set = [](inkwell_arm* by, const char* name, double value) {
+    REQUIRE_MESSAGE(inkwell_set_parameters(by, &name, &value, 1) == INKWELL_OK, std::string(inkwell_error_text()));
+  };
+  set(other.arm, "wall_damping_Ns_per_m", 3.0);  // before the recording
+  REQUIRE_MESSAGE(inkwell_start_recording(arm, file.c_str()) == INKWELL_OK, std::string(inkwell_error_text()));
+  REQUIRE(inkwell_sleep(arm, 0.1) == INKWELL_OK);
+  set(other.arm, "wall_stiffness_N_per_m", 500.0);
+  set(arm, "wall_stiffness_N_per_m", 600.0);
+  REQUIRE(inkwell_sleep(arm, 1.5) == INKWELL_OK);
+  set(other.arm, "wall_stiffness_N_per_m", 700.0);
+  std::uint64_t samples = 0;
+  REQUIRE(inkwell_stop_recording(arm, &samples, nullptr) == INKWELL_OK);
+  const std::string content = text_of(file);
+  CHECK(period_of(content, "parameter", "wall_stiffness_N_per_m = 500.0, was 800.0, by another program") > 0);
+  CHECK(period_of(content, "parameter", "wall_stiffness_N_per_m = 600.0, was 500.0") > 0);
+  CHECK(period_of(content, "parameter", "wall_stiffness_N_per_m = 700.0, was 600.0, by another program") > 0);
+  CHECK(period_of(content, "parameter", "wall_stiffness_N_per_m = 600.0, was 500.0, by") == -1);
+  CHECK(period_of(content, "parameter", "wall_damping") == -1);
+}
+
 TEST_CASE("a recording with an unplugged cable is not complete, and the message names the remedy that works") {
   const TemporaryDirectory directory;
   const auto file = directory.file("unplugged.csv");

@@ -77,6 +77,8 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   WindowRig rig;
   rig.click("tabs/Recording");
   rig.enter("recording/file", file);
+  rig.enter("recording/name", "subject 7");
+  rig.enter("recording/note", "left hand");
   rig.click("recording/Start recording");
   rig.wait_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
   rig.enter("recording/mark text", "here");
@@ -91,6 +93,8 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   CHECK(recording.size() > 10'000);  // half a second and the duration of the clicks
   CHECK(recording.lost() == 0);
   CHECK(recording.information.simulation);
+  CHECK(recording.information.name == "subject 7");
+  CHECK(recording.information.note == "left hand");
   REQUIRE(recording.marks.size() == 1);
   CHECK(recording.marks[0].text == "here");
 

@@ -19,6 +19,8 @@ namespace {
 
 using protocol::Command;
 
+constexpr std::string_view by_another_program = ", by another program";
+
 /// The library repeats an unanswered enable_force command after this board time.
 constexpr double retry_s = 0.1;
 
@@ -51,6 +53,7 @@ Arm::Arm(const std::string& address, double timeout_s)
     : connection_(address, poses_, reports_, duration_of(timeout_s)),
       force_(connection_.device(), poses_),
       scope_(connection_.device(), poses_, reports_),
+      parameter_watch_([this] { note_foreign_changes(); }),
       servo_(
           poses_, [this](const auto& force_N, std::uint32_t pose_sequence) { drive(force_N, pose_sequence); },
           [this] { force_.let_go(); }, &reports_) {
@@ -237,8 +240,22 @@ void Arm::note_change(Change change) {
     return;
   }
   const auto before = device().parameters();
+  if (!poses_.is_stepped())
+    scope_.note(device::events_of_change(recorded_parameters_, before, std::nullopt, by_another_program));
   const std::optional<std::int64_t> at_periods = change();
-  scope_.note(device::events_of_change(before, device().parameters(), at_periods));
+  recorded_parameters_ = device().parameters();
+  scope_.note(device::events_of_change(before, recorded_parameters_, at_periods));
+}
+
+void Arm::note_foreign_changes() {
+  const std::lock_guard lock(parameters_mutex_);
+  if (!scope_.is_recording()) return;
+  try {
+    const auto now = device().parameters();
+    scope_.note(device::events_of_change(recorded_parameters_, now, std::nullopt, by_another_program));
+    recorded_parameters_ = now;
+  } catch (const Error&) {  // the link is lost, or the board is busy
+  }
 }
 
 void Arm::set_parameters(const std::vector<device::ParameterChange>& changes) {
@@ -280,7 +297,17 @@ void Arm::start_recording(const std::string& path) {
     origin.name = recording_name_;
     origin.note = recording_note_;
   }
-  scope_.start_recording(path, endpoint().is_virtual, origin);
+  const std::lock_guard lock(parameters_mutex_);
+  const auto parameters = device().parameters();
+  scope_.start_recording(path, parameters, endpoint().is_virtual, origin);
+  recorded_parameters_ = parameters;
+  if (!poses_.is_stepped()) parameter_watch_.begin();
+}
+
+recording::RecorderStatus Arm::stop_recording() {
+  parameter_watch_.end();
+  if (!poses_.is_stepped()) note_foreign_changes();  // of the last half second
+  return scope_.stop_recording();
 }
 
 void Arm::send_test_pulse(protocol::Command command, const protocol::TestPulse& pulse) {

@@ -19,6 +19,7 @@
 
 #include "host/bindings/library/connection.hpp"
 #include "host/bindings/library/force_output.hpp"
+#include "host/bindings/library/parameter_watch.hpp"
 #include "host/bindings/library/pose_feed.hpp"
 #include "host/bindings/library/pose_reports.hpp"
 #include "host/bindings/library/scope_stream.hpp"
@@ -95,6 +96,7 @@ class Arm {
   /// Texts of the next recordings.
   void describe_recordings(std::string name, std::string note);
   void start_recording(const std::string& path);
+  recording::RecorderStatus stop_recording();
 
   struct Losses {
     std::uint64_t poses;  ///< sent by the board and not received
@@ -132,6 +134,8 @@ class Arm {
   /// Changes parameters, and notes the changes in a running recording.
   template <class Change>
   void note_change(Change change);
+  /// Notes parameter changes of other programs in a running recording.
+  void note_foreign_changes();
   void drive(const double (&force_N)[3], std::uint32_t pose_sequence);
   void bid_farewell();
 
@@ -144,7 +148,10 @@ class Arm {
   std::mutex claim_mutex_;  ///< serializes claims of the arm
   std::mutex texts_mutex_;  ///< guards the texts of recordings
   std::string recording_name_, recording_note_;
-  std::mutex parameters_mutex_;  ///< serializes transactions and the updates that follow them
+  std::mutex parameters_mutex_;                   ///< serializes transactions and the updates that follow them
+  protocol::ParameterSet recorded_parameters_{};  ///< parameters after the last noted change
+  /// Not used on a stepped board, because requests at any time would make runs differ.
+  ParameterWatch parameter_watch_;
 
   Servo servo_;  ///< last: its function uses all other members
 };

@@ -16,7 +16,7 @@ inkwell_result inkwell_mark(inkwell_arm* arm, const char* text) {
 
 inkwell_result inkwell_finish_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost, int* is_complete) {
   return guarded([&] {
-    const auto status = arm_of(arm).scope().stop_recording();
+    const auto status = arm_of(arm).stop_recording();
     if (samples != nullptr) *samples = status.samples;
     if (lost != nullptr) *lost = status.lost;
     if (is_complete != nullptr) *is_complete = status.is_complete ? 1 : 0;

@@ -216,7 +216,7 @@ inkwell_result inkwell_start_recording(inkwell_arm* arm, const char* path) {
 
 inkwell_result inkwell_stop_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost) {
   return guarded([&] {
-    const auto status = arm_of(arm).scope().stop_recording();
+    const auto status = arm_of(arm).stop_recording();
     if (samples != nullptr) *samples = status.samples;
     if (lost != nullptr) *lost = status.lost;
   });

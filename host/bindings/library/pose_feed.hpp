@@ -169,6 +169,8 @@ class PoseFeed final : public device::LockStep {
   // ---- lock step ---------------------------------------------------------------------------------------------
 
   bool is_in_lock_step() const { return turn_.has_value(); }
+  /// Returns true if program code uses no board time, so that runs are repeatable.
+  bool is_stepped() const { return is_stepped_; }
   /// Calls `part` in each turn until remove() is called. Only in lock step.
   void add(TurnPart& part);
   void remove(TurnPart& part);

@@ -170,7 +170,8 @@ std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::siz
   return taken;
 }
 
-void ScopeStream::start_recording(const std::string& path, bool is_simulation, const recording::Origin& origin) {
+void ScopeStream::start_recording(const std::string& path, const protocol::ParameterSet& parameters, bool is_simulation,
+                                  const recording::Origin& origin) {
   const std::lock_guard user(user_mutex_);
   std::vector<protocol::Signal> signals;
   {
@@ -181,7 +182,7 @@ void ScopeStream::start_recording(const std::string& path, bool is_simulation, c
   if (signals.empty()) throw NotNow("No signals are selected. Select the signals to record first.");
   if (recorder_) throw NotNow("A recording is already running. Stop it first.");
   auto recorder = std::make_unique<recording::Recorder>(
-      path, recording::describe(device_.information(), device_.parameters(), signals, "", is_simulation, origin));
+      path, recording::describe(device_.information(), parameters, signals, "", is_simulation, origin));
   const std::lock_guard lock(mutex_);
   recorder_ = std::move(recorder);
   feed_.emplace(*recorder_);

@@ -34,7 +34,8 @@ class ScopeStream : private TurnPart {
   std::optional<device::ScopeSamples> read(double timeout_s, std::size_t capacity);
 
   /// Throws NotNow if no signals are selected or a recording is running.
-  void start_recording(const std::string& path, bool is_simulation, const recording::Origin& origin);
+  void start_recording(const std::string& path, const protocol::ParameterSet& parameters, bool is_simulation,
+                       const recording::Origin& origin);
   /// Throws NotNow if no recording is running, and Error if the file could not be written.
   recording::RecorderStatus stop_recording();
   bool is_recording();

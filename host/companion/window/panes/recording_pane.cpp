@@ -98,6 +98,9 @@ class RecordingPane final : public Pane, public RecordingControls {
   enum class Choice : std::uint8_t { standard, path, scope };
 
   void start(const std::vector<protocol::Signal>& scope_signals);
+  /// Name and note of the next recording.
+  recording::Origin origin() const { return {.name = name_, .note = note_, .image = {}, .arm_description = {}}; }
+  void draw_texts(const Style& style);
   void stop();
   /// Adds a mark. Without a text, the text has the next number.
   void mark(const std::string& text);
@@ -116,7 +119,8 @@ class RecordingPane final : public Pane, public RecordingControls {
   DeviceDesk& desk_;
   std::function<void(const std::filesystem::path&)> replay_;
   bool starts_with_replay_;
-  std::string file_;  ///< empty: a name derived from the time
+  std::string file_;         ///< empty: a name derived from the time
+  std::string name_, note_;  ///< stored in the recordings; may be empty
   Choice choice_ = Choice::standard;
   std::string mark_text_;
   std::unique_ptr<recording::Recorder> recorder_;  ///< null while not recording
@@ -163,8 +167,8 @@ void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
       std::filesystem::remove(written_file_, error);
     }
     may_be_replaced_.reset();
-    const auto about =
-        recording::describe(*view.status.information, *view.parameters, signals_, "", view.status.is_simulation);
+    const auto about = recording::describe(*view.status.information, *view.parameters, signals_, "",
+                                           view.status.is_simulation, origin());
     recorder_ = std::make_unique<recording::Recorder>(written_file_, about);
     next_event_ = desk_.events().end();
   } catch (const device::Error& error) {
@@ -204,7 +208,7 @@ void RecordingPane::save_captured() {
                          .blocks = capture_.blocks(),
                          .marks = {}};
   task.information = recording::describe(*captured_device_, captured_parameters_, task.blocks.back()->signals, "",
-                                         captured_simulation_);
+                                         captured_simulation_, origin());
   const device::EventLog& events = desk_.events();
   for (std::uint64_t number = events.begin(); number < events.end(); ++number)
     if (const device::Event& event = events[number];
@@ -299,6 +303,7 @@ void RecordingPane::draw_choice(const PaneFrame& frame) {
   int chosen = static_cast<int>(choice_);
   if (ImGui::Combo("##signals", &chosen, choices, 3)) choice_ = static_cast<Choice>(chosen);
   help_on_hover("Signals", "The recording always includes the signals of the scope.", style);
+  draw_texts(style);
   ImGui::BeginDisabled(!waits.empty());
   if (record_button(style)) start(frame.scope_signals);
   ImGui::EndDisabled();
@@ -310,6 +315,18 @@ void RecordingPane::draw_choice(const PaneFrame& frame) {
   else
     wrapped_text(palette.danger_text, last_status_->error);
   draw_numbers(style, *last_status_);
+}
+
+void RecordingPane::draw_texts(const Style& style) {
+  const auto field = [&](const char* label, const char* item, const char* hint, const char* help, std::string& value) {
+    ImGui::SetNextItemWidth(-1);
+    need_glyphs(value);
+    ImGui::InputTextWithHint(label, hint, &value);
+    note_item(item);
+    help_on_hover("", help, style);
+  };
+  field("##name", "name", "name (optional)", "Name of the recording, such as a subject and a trial.", name_);
+  field("##note", "note", "note (optional)", "Note that is stored in the recording.", note_);
 }
 
 void RecordingPane::draw_progress(const Style& style) {

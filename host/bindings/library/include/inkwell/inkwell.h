@@ -583,7 +583,8 @@ INKWELL_API inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s
 INKWELL_API inkwell_result inkwell_read_samples(inkwell_arm* arm, double timeout_s, float* values, int64_t* periods,
                                                 size_t capacity, size_t* count, uint64_t* lost);
 
-/* Records the selected signals to a file until inkwell_stop_recording(). The extension selects HDF5 or CSV. */
+/* Records the selected signals to a file until inkwell_stop_recording(). The extension selects HDF5 or CSV.
+ * Marks state parameter changes, also those of other programs, except on a stepped board. */
 INKWELL_API inkwell_result inkwell_start_recording(inkwell_arm* arm, const char* path);
 /* Completes the file and returns its number of samples and of lost samples; both may be NULL. */
 INKWELL_API inkwell_result inkwell_stop_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost);
