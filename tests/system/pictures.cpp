@@ -312,11 +312,11 @@ TEST_CASE("pictures: every pane in a small, a usual and a large window, dark and
         rig.picture(picture_file(std::string("pane ") + size.screen + " " + theme + " " + what));
       };
       rig.wait_until("the message is gone", [](const Sight& now) { return !now.has("tuning message/message"); });
-      rig.enter("tuning/wall_stiffness_N_per_m", "9000");
+      rig.enter("tuning/sphere_radius_m", "9000");  // visible in the smallest window
       rig.press_key("Return");
-      rig.wait_until("it is refused", [](const Sight& now) { return now.says("0 to 3000 N/m."); });
+      rig.wait_until("it is refused", [](const Sight& now) { return now.says(" mm."); });
       photograph("tuning");
-      rig.enter("tuning/wall_stiffness_N_per_m", "900");
+      rig.enter("tuning/sphere_radius_m", "6");
       rig.press_key("Return");
       rig.click("tabs/Guides");
       photograph("guides");
