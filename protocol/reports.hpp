@@ -277,6 +277,7 @@ struct InformationReport {
   std::uint32_t force_reports_refused;  ///< reports with invalid values
   std::uint32_t reset_cause;            ///< RCC_CSR bits 31..24, as read at start-up
   float motor_heat[3];                  ///< heat now; 1 is the heat at the continuous current
+  std::uint32_t image_check;            ///< checksum in the last word of the flashed image, as in CrashFacts
 };
 
 enum class ParameterOperation : std::uint8_t {
@@ -494,7 +495,7 @@ static_assert(sizeof(ControllerReport) == 14);
 static_assert(sizeof(SignalSelection) == 33 && sizeof(TestPulse) == 9);
 static_assert(sizeof(CommandReport) == 45);
 static_assert(sizeof(ForceReport) == 28);
-static_assert(sizeof(InformationReport) == 104);
+static_assert(sizeof(InformationReport) == 108);
 static_assert(sizeof(ParameterEntry) == 8);
 static_assert(sizeof(ParametersReport) == 12 + 8 * parameter_entries_maximum);
 static_assert(sizeof(TransactionReport) == 20);

@@ -123,7 +123,8 @@ int main() {
                                .firmware_version = {INKWELL_VERSION_NUMBERS},
                                .board = board::facts.name,
                                .processor_clock_Hz = board::processor_Hz,
-                               .reset_cause = reset_cause.flags >> 24};
+                               .reset_cause = reset_cause.flags >> 24,
+                               .image_check = *image_check};
   usb::Device usb_device{usb_port, host_link, identity};
   if (!usb_port.start()) stop_forever();
   host_link.self_test.note(protocol::SelfTestItem::watchdog, watchdog.start() && watchdog_trial.is_passed,

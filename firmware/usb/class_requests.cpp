@@ -214,6 +214,7 @@ protocol::InformationReport Device::information() const {
   report.force_reports_late = link_.status.late_force_reports();
   report.force_reports_refused = link_.program.forces_refused();
   report.reset_cause = identity_.reset_cause;
+  report.image_check = identity_.image_check;
   for (std::size_t i = 0; i < 3; ++i) report.motor_heat[i] = link_.status.motor_heat(i);
   return report;
 }

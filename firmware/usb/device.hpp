@@ -24,6 +24,7 @@ struct Identity {
   std::string_view board;                        ///< target board of this firmware
   std::uint32_t processor_clock_Hz;
   std::uint32_t reset_cause;  ///< RCC_CSR bits 31..24, as read at start-up
+  std::uint32_t image_check;  ///< checksum in the last word of the flashed image
 };
 
 class Device final : private ControlRequests {

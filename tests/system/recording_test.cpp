@@ -8,8 +8,10 @@
 #include <string>
 #include <thread>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/crash/firmware_image.hpp"
 #include "host/client/device/virtual_board.hpp"
 #include "host/client/recording/recording.hpp"
 #include "host/client/recording/signals.hpp"
@@ -52,6 +54,9 @@ TEST_CASE("a recording contains every control period and states its origin") {
   CHECK(recording.information.name == "subject 7");
   CHECK(recording.information.library_sha256.size() == 64);
   CHECK(recording.information.image_sha256.size() == 64);
+  const auto image_check = crash::FirmwareImage(build_directory() + "/../board/inkwell.elf").check();
+  REQUIRE(image_check);
+  CHECK(recording.information.image_check == fmt::format("{:08x}", *image_check));
   CHECK(recording.information.arm == "PHANTOM Omni");
   CHECK(recording.information.serial_number.size() == 24);
   CHECK(recording.information.parameters == protocol::default_parameters());

@@ -174,6 +174,7 @@ class CsvReader final : public ColumnReader {
                                                                {"library_sha256", &about.library_sha256},
                                                                {"image_sha256", &about.image_sha256},
                                                                {"arm_sha256", &about.arm_sha256},
+                                                               {"image_check", &about.image_check},
                                                                {"firmware_version", &about.firmware_version},
                                                                {"serial_number", &about.serial_number},
                                                                {"arm", &about.arm}};

@@ -72,8 +72,8 @@ class CsvWriter final : public Writer {
                    about.name, about.note, about.created_utc);
     fmt::format_to(out, "# library_version = {}\n# library_sha256 = {}\n# image_sha256 = {}\n# arm_sha256 = {}\n",
                    about.library_version, about.library_sha256, about.image_sha256, about.arm_sha256);
-    fmt::format_to(out, "# firmware_version = {}\n# protocol_version = {}\n", about.firmware_version,
-                   about.protocol_version);
+    fmt::format_to(out, "# image_check = {}\n# firmware_version = {}\n# protocol_version = {}\n", about.image_check,
+                   about.firmware_version, about.protocol_version);
     fmt::format_to(out, "# serial_number = {}\n# arm = {}\n# simulation = {}\n", about.serial_number, about.arm,
                    about.simulation ? 1 : 0);
     if (about.step_periods != 1) fmt::format_to(out, "# step_periods = {}\n", about.step_periods);

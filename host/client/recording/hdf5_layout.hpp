@@ -1,7 +1,7 @@
 // Layout of a recording in an HDF5 file. Columns are compressed with shuffle and deflate, which every HDF5 build has.
 //
 //   `/`                    attributes: format, format_version, name, note, created_utc, library_version,
-//                          library_sha256, image_sha256, arm_sha256, firmware_version, protocol_version,
+//                          library_sha256, image_sha256, arm_sha256, image_check, firmware_version, protocol_version,
 //                          serial_number, arm, force_law (as sent by the device, in hexadecimal digits), simulation,
 //                          servo_rate_Hz, step_periods (control periods from one sample to the next).
 //   `/parameters/NAME`     scalar float, attributes unit and help.

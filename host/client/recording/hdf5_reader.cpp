@@ -95,6 +95,7 @@ class Hdf5Reader final : public ColumnReader {
     about.library_sha256 = text("library_sha256");
     about.image_sha256 = text("image_sha256");
     about.arm_sha256 = text("arm_sha256");
+    about.image_check = text("image_check");
     about.firmware_version = text("firmware_version");
     about.protocol_version = static_cast<std::uint16_t>(input_->number_attribute("protocol_version"));
     about.serial_number = text("serial_number");

@@ -152,6 +152,7 @@ class Hdf5Writer final : public Writer {
     write_attribute(file.id(), "library_sha256", about.library_sha256);
     write_attribute(file.id(), "image_sha256", about.image_sha256);
     write_attribute(file.id(), "arm_sha256", about.arm_sha256);
+    write_attribute(file.id(), "image_check", about.image_check);
     write_attribute(file.id(), "firmware_version", about.firmware_version);
     write_attribute(file.id(), "protocol_version", std::int64_t{about.protocol_version});
     write_attribute(file.id(), "serial_number", about.serial_number);

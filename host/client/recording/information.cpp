@@ -2,6 +2,8 @@
 
 #include <dlfcn.h>
 
+#include <fmt/format.h>
+
 #include "host/client/device/event.hpp"
 #include "host/client/recording/sha256.hpp"
 #include "protocol/plain_text.hpp"
@@ -41,6 +43,7 @@ Information describe(const device::Information& device, const protocol::Paramete
           .library_sha256 = library_sha256,
           .image_sha256 = sha256_of_file(origin.image),
           .arm_sha256 = sha256_of_file(origin.arm_description),
+          .image_check = device.report.image_check == 0 ? "" : fmt::format("{:08x}", device.report.image_check),
           .firmware_version = device.firmware_version,
           .protocol_version = device.protocol_version,
           .serial_number = device.serial_number,

@@ -27,6 +27,8 @@ struct Information {
   std::string library_version, library_sha256;
   /// SHA-256 of the firmware image and of the arm description; empty if the files are unknown, as for a board on USB.
   std::string image_sha256, arm_sha256;
+  /// Checksum of the firmware image on the board, in hexadecimal digits, as in `inkwell info`; empty: not reported.
+  std::string image_check;
   std::string firmware_version;
   std::uint16_t protocol_version = protocol::protocol_version;
   std::string serial_number;

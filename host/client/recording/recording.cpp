@@ -139,9 +139,9 @@ StoredRecording open_either(const std::filesystem::path& file) {
 /// Converts all texts of the file to plain text, which is safe to print, draw and copy.
 void make_plain(StoredRecording& recording) {
   auto& about = recording.information;
-  for (std::string* text :
-       {&about.name, &about.note, &about.created_utc, &about.library_version, &about.library_sha256,
-        &about.image_sha256, &about.arm_sha256, &about.firmware_version, &about.serial_number, &about.arm})
+  for (std::string* text : {&about.name, &about.note, &about.created_utc, &about.library_version, &about.library_sha256,
+                            &about.image_sha256, &about.arm_sha256, &about.image_check, &about.firmware_version,
+                            &about.serial_number, &about.arm})
     *text = protocol::plain_text(*text);
   for (Mark& mark : recording.marks) {
     mark.text = protocol::plain_text(mark.text);

@@ -47,6 +47,7 @@ ordered_json to_json(const device::Information& information, const protocol::Sto
                     {"force_reports_late", report.force_reports_late},
                     {"force_reports_refused", report.force_reports_refused},
                     {"reset_cause", report.reset_cause},
+                    {"image_check", fmt::format("{:08x}", report.image_check)},
                     {"motor_heat", report.motor_heat},
                     {"stored", info(store.contents).name},
                     {"not_stored", store.differing}};
@@ -69,8 +70,8 @@ void print(const device::Information& information, const protocol::StoreReport& 
   const double cycles_per_period = static_cast<double>(report.processor_clock_Hz) / std::max(1u, report.servo_rate_Hz);
   fmt::print("serial number       {}\n", information.serial_number);
   fmt::print("board               {}\n", board_text(information.board_name));
-  fmt::print("firmware            {}, protocol {} (companion {})\n", information.firmware_version,
-             information.protocol_version, INKWELL_VERSION);
+  fmt::print("firmware            {}, image {:08x}, protocol {} (companion {})\n", information.firmware_version,
+             report.image_check, information.protocol_version, INKWELL_VERSION);
   if (const auto& law = information.force_law) {
     fmt::print("force law           {}: {}\n", law->name, law->help);
     for (const auto& row : law->signals)

@@ -40,6 +40,7 @@ ordered_json to_json(const StoredRecording& recording) {
           {"library_sha256", about.library_sha256},
           {"image_sha256", about.image_sha256},
           {"arm_sha256", about.arm_sha256},
+          {"image_check", about.image_check},
           {"firmware_version", about.firmware_version},
           {"protocol_version", about.protocol_version},
           {"serial_number", about.serial_number},
@@ -69,8 +70,8 @@ void print(const StoredRecording& recording) {
   if (!about.name.empty()) fmt::print("name                {}\n", about.name);
   if (!about.note.empty()) fmt::print("note                {}\n", about.note);
   fmt::print("recorded            {}{}\n", about.created_utc, about.simulation ? ", from a simulation" : "");
-  fmt::print("device              {}, firmware {}, protocol {}\n", about.serial_number, about.firmware_version,
-             about.protocol_version);
+  fmt::print("device              {}, firmware {}{}, protocol {}\n", about.serial_number, about.firmware_version,
+             about.image_check.empty() ? "" : fmt::format(" (image {})", about.image_check), about.protocol_version);
   if (!about.arm.empty()) fmt::print("arm                 {}\n", about.arm);
   fmt::print("duration            {:.3f} s, {} samples, {} lost{}\n", recording.duration_s(), recording.size(),
              recording.lost(), recording.complete ? "" : "; not complete");

@@ -171,6 +171,7 @@ TEST_CASE("HID: the information report contains tables, clocks and counters") {
   CHECK(report.scope_samples_dropped == 0);
   CHECK(report.pose_reports_dropped == 0);
   CHECK(report.reset_cause == 0x14);
+  CHECK(report.image_check == 0x600DC0DE);
   CHECK(report.motor_heat[0] == 0.25f);
   CHECK(report.motor_heat[2] == 1.5f);
 }

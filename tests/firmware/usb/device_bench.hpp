@@ -22,7 +22,8 @@ inline constexpr usb::Identity identity{{'0', '1', '2', '3', '4', '5', '6', '7',
                                         {1, 2, 3},
                                         "trial_board",
                                         168'000'000,
-                                        0x14};
+                                        0x14,
+                                        0x600DC0DE};
 
 /// Result of a control transfer and the data of its IN data stage.
 struct ControlResult {

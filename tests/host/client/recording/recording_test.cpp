@@ -302,8 +302,8 @@ TEST_CASE("a recording is complete only if nothing is missing") {
 TEST_CASE("a recording states its name, its note, what recorded it, and the time of the computer") {
   const TemporaryDirectory directory;
   std::ofstream(directory / "arm.toml") << "abc";
-  const device::Information device{
-      .firmware_version = "0.1.0", .protocol_version = 1, .serial_number = "", .report = {}};
+  device::Information device{.firmware_version = "0.1.0", .protocol_version = 1, .serial_number = "", .report = {}};
+  device.report.image_check = 0x0BADCAFE;
   const auto described =
       describe(device, protocol::default_parameters(), about().signals, "", false,
                {.name = "subject 7", .note = "left hand", .image = {}, .arm_description = directory / "arm.toml"});
@@ -325,6 +325,7 @@ TEST_CASE("a recording states its name, its note, what recorded it, and the time
     CHECK(about.library_version == described.library_version);
     CHECK(about.library_sha256 == described.library_sha256);
     CHECK(about.image_sha256.empty());
+    CHECK(about.image_check == "0badcafe");
     CHECK(about.arm_sha256 == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     REQUIRE(recording.clock.size() == 3);
     CHECK(recording.clock[0].period == 999);
