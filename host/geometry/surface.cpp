@@ -129,7 +129,7 @@ std::shared_ptr<const Surface> Surface::build(Mesh mesh, const Progress& progres
   if (!proceeds(tree_end)) return nullptr;
   surface->adjacency_ = find_neighbors(surface->mesh_);
   if (!proceeds(0.8)) return nullptr;
-  surface->tree_.set_cones(make_face_cones(surface->mesh_, surface->adjacency_));
+  surface->tree_.set_cones(surface->mesh_, make_face_cones(surface->mesh_, surface->adjacency_));
   surface->volume_m3_ = volume_of_m3(surface->mesh_);
   surface->is_solid_ =
       surface->volume_m3_ > 0 && is_closed(surface->adjacency_) && is_oriented(surface->mesh_, surface->adjacency_);
@@ -150,7 +150,8 @@ std::optional<SurfacePoint> Surface::closest(const glm::dvec3& point_m, double r
   };
   if (start < mesh_.faces.size()) try_face(start);
   auto search_radius_m = static_cast<float>(std::min(std::sqrt(least_m2), 1e6));
-  tree_.visit_closest(glm::vec3{point_m}, search_radius_m, [&](std::uint32_t face, float& radius) {
+  const auto enters = [](const Tree::Node&) { return true; };
+  tree_.visit_closest_if(glm::vec3{point_m}, search_radius_m, enters, [&](std::uint32_t face, float& radius) {
     const double before_m2 = least_m2;
     try_face(face);
     if (least_m2 < before_m2) radius = static_cast<float>(std::sqrt(least_m2));
@@ -248,7 +249,7 @@ glm::dvec3 Surface::smooth_normal(std::uint32_t face, const glm::dvec3& point_m,
 
 std::size_t Surface::memory_bytes() const {
   return sizeof(*this) + bytes(mesh_.vertices_m) + bytes(mesh_.faces) + bytes(adjacency_.neighbors) +
-         bytes(tree_.nodes()) + bytes(original_faces_);
+         tree_.memory_bytes() + bytes(original_faces_);
 }
 
 }  // namespace inkwell::geometry

@@ -11,9 +11,6 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 constexpr std::size_t bin_count = 16;
-constexpr std::uint32_t count_mask = 15;
-constexpr float octahedron_steps = 1023;
-constexpr float angle_step_rad = pi / 255;
 
 /// A face while the tree is built.
 struct Item {
@@ -92,57 +89,9 @@ Position split(Position begin, Position end, bool halve) {
   return std::partition(begin, end, [&](const Item& item) { return bin_of(item) < best; });
 }
 
-float sign(float value) { return value < 0 ? -1.0f : 1.0f; }
-
-std::uint32_t quantized(float coordinate) {
-  return static_cast<std::uint32_t>(std::lround((std::clamp(coordinate, -1.0f, 1.0f) + 1) / 2 * octahedron_steps));
-}
-
-float restored(std::uint32_t steps) { return static_cast<float>(steps & 1023) / octahedron_steps * 2 - 1; }
-
-/// Axis on the octahedron: the lower half is folded over the upper half.
-glm::vec3 unpacked_axis(std::uint32_t bits) {
-  glm::vec3 axis{restored(bits >> 4), restored(bits >> 14), 0};
-  axis.z = 1 - std::abs(axis.x) - std::abs(axis.y);
-  if (axis.z < 0) {
-    const float x = axis.x;
-    axis.x = (1 - std::abs(axis.y)) * sign(x);
-    axis.y = (1 - std::abs(x)) * sign(axis.y);
-  }
-  return glm::normalize(axis);
-}
-
 float angle_between_rad(const glm::vec3& left, const glm::vec3& right) {
   return 2 * std::atan2(glm::length(left - right), glm::length(left + right));
 }
-
-std::uint32_t packed(const Cone& cone) {
-  glm::vec3 axis = cone.axis / (std::abs(cone.axis.x) + std::abs(cone.axis.y) + std::abs(cone.axis.z));
-  if (axis.z < 0) {
-    const float x = axis.x;
-    axis.x = (1 - std::abs(axis.y)) * sign(x);
-    axis.y = (1 - std::abs(x)) * sign(axis.y);
-  }
-  const std::uint32_t bits = quantized(axis.x) << 4 | quantized(axis.y) << 14;
-  const float angle_rad = cone.angle_rad + angle_between_rad(cone.axis, unpacked_axis(bits)) + 1e-3f;
-  const auto steps = static_cast<std::uint32_t>(std::min(std::ceil(angle_rad / angle_step_rad), 255.0f));
-  return bits | steps << 24;
-}
-
-struct CosineAndSine {
-  float cosine, sine;
-};
-
-std::array<CosineAndSine, 256> make_angles() {
-  std::array<CosineAndSine, 256> angles;
-  for (std::size_t step = 0; step < angles.size(); ++step) {
-    const float angle_rad = static_cast<float>(step) * angle_step_rad;
-    angles[step] = {std::cos(angle_rad), std::sin(angle_rad)};
-  }
-  return angles;
-}
-
-const std::array<CosineAndSine, 256> angles = make_angles();
 
 }  // namespace
 
@@ -200,10 +149,10 @@ std::optional<Tree> Tree::build(Mesh& mesh, std::vector<std::uint32_t>& original
     const std::size_t count = range.end - range.begin;
     if (count <= leaf_faces_max) {
       node.link = static_cast<std::uint32_t>(range.begin);
-      node.count_and_cone = static_cast<std::uint32_t>(count) | packed({});
+      node.face_count = static_cast<std::uint32_t>(count);
       continue;
     }
-    node.count_and_cone = packed({});
+    node.face_count = 0;
     // From this depth on halves bound the depth for every mesh.
     const auto middle = split(begin, end, range.depth >= depth_max / 2);
     const auto middle_index = static_cast<std::size_t>(middle - items.begin());
@@ -228,34 +177,65 @@ std::optional<Tree> Tree::build(Mesh& mesh, std::vector<std::uint32_t>& original
   return tree;
 }
 
-void Tree::set_cones(const std::vector<Cone>& face_cones) {
+void Tree::set_cones(const Mesh& mesh, const std::vector<Cone>& face_cones) {
+  // Larger nodes are rarely flat.
+  constexpr std::uint32_t flat_faces_max = 512;
+  struct Part {
+    Cone cone;
+    std::uint32_t first_face, face_count;
+  };
   // Children have higher numbers than their parents.
-  std::vector<Cone> cones(nodes_.size());
+  std::vector<Part> parts(nodes_.size());
   for (std::size_t index = nodes_.size(); index-- > 0;) {
     Node& node = nodes_[index];
-    const std::uint32_t count = node.face_count();
-    cones[index] = count > 0 ? face_cones[node.link] : join(cones[index + 1], cones[node.link]);
-    for (std::uint32_t face = 1; face < count; ++face) cones[index] = join(cones[index], face_cones[node.link + face]);
-    node.count_and_cone = count | packed(cones[index]);
+    Part& part = parts[index];
+    if (node.face_count > 0) {
+      part = {face_cones[node.link], node.link, node.face_count};
+      for (std::uint32_t face = 1; face < node.face_count; ++face)
+        part.cone = join(part.cone, face_cones[node.link + face]);
+    } else {
+      const Part& left = parts[index + 1];
+      const Part& right = parts[node.link];
+      part = {join(left.cone, right.cone), left.first_face, left.face_count + right.face_count};
+    }
+    if (part.cone.angle_rad < pi) {
+      node.axis = part.cone.axis;
+      node.cosine = std::cos(part.cone.angle_rad);
+      node.sine = std::sin(part.cone.angle_rad);
+    }
+    if (part.cone.angle_rad >= pi || part.face_count > flat_faces_max) continue;
+    node.bottom_m = 1e30f;
+    node.top_m = -1e30f;
+    float squared_radius_m2 = 0;
+    const glm::vec3 middle_m = node.middle_m();
+    for (std::uint32_t face = part.first_face; face < part.first_face + part.face_count; ++face)
+      for (const std::uint32_t vertex : mesh.faces[face]) {
+        const glm::vec3& vertex_m = mesh.vertices_m[vertex];
+        const float height_m = glm::dot(node.axis, vertex_m);
+        node.bottom_m = std::min(node.bottom_m, height_m);
+        node.top_m = std::max(node.top_m, height_m);
+        const glm::vec3 across_m = glm::cross(node.axis, vertex_m - middle_m);
+        squared_radius_m2 = std::max(squared_radius_m2, glm::dot(across_m, across_m));
+      }
+    node.radius_m = std::sqrt(squared_radius_m2) * 1.0001f + padding_m_;
   }
 }
 
 bool Tree::faces(const glm::vec3& point_m, const Node& node, bool both_sides) {
-  const CosineAndSine angle = angles[node.count_and_cone >> 24];
-  if (angle.cosine < -0.9f) return true;
-  // The directions from points of the box to the point form a cone too: its sine is radius over distance.
+  if (node.cosine < -0.99f) return true;
+  // The directions from the points of the box to the point form a second cone: its sine is radius over distance. Both
+  // cones have a common direction if the angle between the axes does not exceed the sum of both angles. All terms are
+  // multiplied by the distance.
   const glm::vec3 way_m = point_m - (node.minimum_m + node.maximum_m) * 0.5f;
   const glm::vec3 diagonal_m = (node.maximum_m - node.minimum_m) * 0.5f;
-  const float squared_distance = glm::dot(way_m, way_m);
-  const float squared_radius = glm::dot(diagonal_m, diagonal_m);
-  if (squared_distance <= squared_radius * 1.001f) return true;
-  const float sine = std::sqrt(squared_radius / squared_distance);
-  const float cosine = std::sqrt(1 - squared_radius / squared_distance);
-  // Sum of both angles.
-  if (angle.sine * cosine + angle.cosine * sine < 0) return true;
-  const float least = (angle.cosine * cosine - angle.sine * sine) - 1e-3f;
-  const float along = glm::dot(unpacked_axis(node.count_and_cone), way_m) / std::sqrt(squared_distance);
-  return (both_sides ? std::abs(along) : along) >= least;
+  const float squared_distance_m2 = glm::dot(way_m, way_m);
+  const float squared_radius_m2 = glm::dot(diagonal_m, diagonal_m) * 1.001f;
+  if (squared_distance_m2 <= squared_radius_m2) return true;
+  const float sine_m = std::sqrt(squared_radius_m2);
+  const float cosine_m = std::sqrt(squared_distance_m2 - squared_radius_m2);
+  if (node.sine * cosine_m + node.cosine * sine_m < 0) return true;  // the sum exceeds 180 degrees
+  const float along_m = glm::dot(node.axis, way_m);
+  return (both_sides ? std::abs(along_m) : along_m) >= node.cosine * cosine_m - node.sine * sine_m - 1e-3f * cosine_m;
 }
 
 }  // namespace inkwell::geometry
