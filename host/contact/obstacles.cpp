@@ -18,6 +18,9 @@ using geometry::Tree;
 constexpr double protection_m = 2e-7;
 /// Largest outward move of an overlapping tip.
 constexpr double recovery_m = 1e-5;
+/// Obstacles are equally close if their distances differ by less. Of these the most violated one is found, so that
+/// few obstacles are needed where the tip touches many faces.
+constexpr double equally_close_m = 1e-7;
 
 /// Fraction of the way that the half-space permits.
 double permitted(const HalfSpace& space, const glm::dvec3& way_m) {
@@ -140,16 +143,18 @@ std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, con
                                       std::span<const HalfSpace> active) {
   std::optional<Obstacle> nearest;
   double least_m = 1e6;
+  double lowest_m = 0;  // of the end of the move above the border of the nearest obstacle
   for (std::size_t index = 0; index < objects.size(); ++index) {
     const PlacedObject& placed = objects[index];
     if (!placed.is_felt) continue;
     if (!placed.surface) {
       const SolidPoint point = closest_point_of_solid(placed.object->shape, placed.to_object(move.start_m));
-      if (point.distance_m >= least_m) continue;
+      if (point.distance_m >= least_m - equally_close_m) continue;
       const auto space = excluding_space(point, placed, move);
       if (!space) continue;
       nearest = {{index, 0}, point.distance_m, *space};
       least_m = point.distance_m;
+      lowest_m = space->height_m(move.way_m);
       continue;
     }
     if (!is_in_reach(placed, move)) continue;
@@ -161,12 +166,15 @@ std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, con
       if (local.is_protected(triangle)) return;
       const glm::dvec3 way_m = local.move.start_m - geometry::closest_point(local.move.start_m, triangle).point_m;
       const double squared_m2 = glm::dot(way_m, way_m);
-      if (squared_m2 >= least_m * least_m) return;
+      if (squared_m2 >= (least_m + equally_close_m) * (least_m + equally_close_m)) return;
       const double distance_m = std::sqrt(squared_m2);
       const auto space = excluding_space(triangle, local.move, way_m, distance_m);
       if (!space) return;
+      const double height_m = space->height_m(local.move.way_m);
+      if (distance_m > least_m - equally_close_m && height_m >= lowest_m) return;
       found = {{index, face}, distance_m, *space};
       least_m = distance_m;
+      lowest_m = height_m;
     };
     const double reach_m = move.radius_m + glm::length(move.way_m);
     auto search_m = static_cast<float>(std::min(least_m, reach_m));
@@ -174,7 +182,7 @@ std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, con
         glm::vec3{local.move.start_m}, search_m, [&](const Tree::Node& node) { return local.concerns(node); },
         [&](std::uint32_t face, float& radius_m) {
           try_face(face);
-          radius_m = std::min(radius_m, static_cast<float>(least_m));
+          radius_m = std::min(radius_m, static_cast<float>(least_m + equally_close_m));
         });
     if (found) {
       found->space.normal = placed.rotation * found->space.normal;

@@ -33,8 +33,8 @@ struct Obstacle {
   HalfSpace space;
 };
 
-/// The obstacle closest to the start whose half-spaces exclude the end of the move. The half-spaces `active` protect
-/// parts of objects: a tip in such a half-space cannot touch triangles on its other side.
+/// The obstacle closest to the start whose half-spaces exclude the end of the move. Nothing if the move is free. The
+/// half-spaces `active` protect parts of objects: a tip in such a half-space cannot touch triangles on its other side.
 std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, const Move& move,
                                       std::span<const HalfSpace> active);
 

@@ -13,11 +13,12 @@ namespace {
 /// A shorter move is the last.
 constexpr double still_m = 1e-7;
 constexpr int moves_max = 24;
+constexpr int searches_max = 30;
 constexpr int obstacles_max = 12;
 
 /// The move from `start_m` that ends closest to `goal_m` in the half-spaces of all obstacles.
 glm::dvec3 find_way_m(std::span<const PlacedObject> objects, LimitingFaces& limiting, const glm::dvec3& start_m,
-                      const glm::dvec3& goal_m, double radius_m, bool recovers) {
+                      const glm::dvec3& goal_m, double radius_m, bool recovers, int& searches) {
   ClosestPosition closest(goal_m - start_m);
   const LimitingFaces known = limiting;
   limiting.count = 0;
@@ -32,11 +33,13 @@ glm::dvec3 find_way_m(std::span<const PlacedObject> objects, LimitingFaces& limi
   }
   for (int count = 0; count < obstacles_max && is_possible; ++count) {
     const auto obstacle = find_obstacle(objects, {start_m, closest.position(), radius_m, recovers}, closest.active());
+    ++searches;
     if (!obstacle) return closest.position();
     is_possible = add(*obstacle);
   }
-  // Too many obstacles, or the tip overlaps two of them: a part of the last move is possible at least.
-  if (recovers) return find_way_m(objects, limiting, start_m, goal_m, radius_m, false);
+  // A tip that overlaps two opposite faces cannot be pushed out of both.
+  if (!is_possible && recovers) return find_way_m(objects, limiting, start_m, goal_m, radius_m, false, searches);
+  // Too many obstacles: a part of the last move is possible.
   const Move move{start_m, closest.position(), radius_m, false};
   return move.way_m * free_fraction(objects, move, closest.active());
 }
@@ -46,8 +49,9 @@ glm::dvec3 find_way_m(std::span<const PlacedObject> objects, LimitingFaces& limi
 glm::dvec3 slide(std::span<const PlacedObject> objects, LimitingFaces& limiting, const glm::dvec3& start_m,
                  const glm::dvec3& goal_m, double radius_m) {
   glm::dvec3 position_m = start_m;
-  for (int count = 0; count < moves_max; ++count) {
-    const glm::dvec3 way_m = find_way_m(objects, limiting, position_m, goal_m, radius_m + skin_m, true);
+  int searches = 0;
+  for (int count = 0; count < moves_max && searches < searches_max; ++count) {
+    const glm::dvec3 way_m = find_way_m(objects, limiting, position_m, goal_m, radius_m + skin_m, true, searches);
     position_m += way_m;
     if (position_m == goal_m || glm::dot(way_m, way_m) < still_m * still_m) break;
   }

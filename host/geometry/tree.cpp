@@ -9,7 +9,7 @@
 namespace inkwell::geometry {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr float pi_rad = std::numbers::pi_v<float>;
 constexpr std::size_t bin_count = 16;
 
 /// A face while the tree is built.
@@ -96,12 +96,12 @@ float angle_between_rad(const glm::vec3& left, const glm::vec3& right) {
 }  // namespace
 
 Cone join(const Cone& left, const Cone& right) {
-  if (left.angle_rad >= pi || right.angle_rad >= pi) return {};
+  if (left.angle_rad >= pi_rad || right.angle_rad >= pi_rad) return {};
   const float between_rad = angle_between_rad(left.axis, right.axis);
   if (between_rad + right.angle_rad <= left.angle_rad) return left;
   if (between_rad + left.angle_rad <= right.angle_rad) return right;
   const float angle_rad = (between_rad + left.angle_rad + right.angle_rad) / 2;
-  if (angle_rad >= pi || between_rad > 3.1f) return {};
+  if (angle_rad >= pi_rad || between_rad > 3.1f) return {};
   // The axis turns from the left axis toward the right axis.
   const float turn_rad = angle_rad - left.angle_rad;
   const glm::vec3 across = glm::normalize(right.axis - left.axis * glm::dot(left.axis, right.axis) + glm::vec3{1e-20f});
@@ -198,12 +198,12 @@ void Tree::set_cones(const Mesh& mesh, const std::vector<Cone>& face_cones) {
       const Part& right = parts[node.link];
       part = {join(left.cone, right.cone), left.first_face, left.face_count + right.face_count};
     }
-    if (part.cone.angle_rad < pi) {
+    if (part.cone.angle_rad < pi_rad) {
       node.axis = part.cone.axis;
       node.cosine = std::cos(part.cone.angle_rad);
       node.sine = std::sin(part.cone.angle_rad);
     }
-    if (part.cone.angle_rad >= pi || part.face_count > flat_faces_max) continue;
+    if (part.cone.angle_rad >= pi_rad || part.face_count > flat_faces_max) continue;
     node.bottom_m = 1e30f;
     node.top_m = -1e30f;
     float squared_radius_m2 = 0;

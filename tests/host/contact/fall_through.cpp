@@ -19,6 +19,8 @@ using geometry::Outline;
 
 /// Longest permitted approach of the tip: two thousandths of a millimeter.
 constexpr double tolerance_m = 2e-6;
+/// The tip starts farther from the wall than the facets of the ball are from the sphere.
+constexpr double start_clearance_m = 1e-4;
 
 void append_inverted(Mesh& mesh, const Mesh& inner) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size());
@@ -148,10 +150,10 @@ PathResult run_path(const std::vector<HollowBody>& bodies, std::uint64_t number)
   contact::Placement& placement = scene.objects[0].placement;
 
   glm::dvec3 start_m = in_cube_m(random, body.size_m);
-  for (int trial = 0; trial < 10000 && distance_m(start_m) < tool.radius_m + 1e-5; ++trial)
+  for (int trial = 0; trial < 10000 && distance_m(start_m) < tool.radius_m + start_clearance_m; ++trial)
     start_m = in_cube_m(random, body.size_m);
   PathResult result;
-  if (distance_m(start_m) < tool.radius_m + 1e-5) return result;
+  if (distance_m(start_m) < tool.radius_m + start_clearance_m) return result;
   contact::Pose hand;
   hand.position_m = placement.to_workspace(start_m);
   glm::dvec3 velocity_m_per_s{};
