@@ -103,8 +103,10 @@ void mark_second_sides(const Mesh& mesh, const Adjacency& adjacency, const std::
 bool is_balanced(const std::vector<BranchedEdge>& branches, const Face& face) {
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const std::pair<std::uint32_t, std::uint32_t> vertices = std::minmax(face[corner], face[(corner + 1) % 3]);
-    const auto edges = std::ranges::equal_range(branches, vertices, {}, &BranchedEdge::vertices);
-    if (2 * std::ranges::count(edges, true, &BranchedEdge::is_forward) != std::ranges::ssize(edges)) return false;
+    const auto begin = std::ranges::lower_bound(branches, vertices, {}, &BranchedEdge::vertices);
+    const auto end = std::ranges::upper_bound(branches, vertices, {}, &BranchedEdge::vertices);
+    if (2 * std::count_if(begin, end, [](const BranchedEdge& branch) { return branch.is_forward; }) != end - begin)
+      return false;
   }
   return true;
 }

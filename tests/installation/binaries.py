@@ -54,6 +54,7 @@ BINARIES = [
     binary("inkwell", r"bin/inkwell", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
     binary("inkwell-lab", r"bin/inkwell-lab", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
     binary("virtual-board", r"bin/virtual-board", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
+    binary("inkwell-import", r"lib/inkwell/helpers/inkwell-import", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
     binary("libinkwell.so", LIBRARY + r"libinkwell\.so\.\d+\.\d+\.\d+", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
     binary("dropins/libHD.so", r"lib/inkwell/dropins/libHD\.so\.3\.4", ASSERTIONS),
     binary("dropins/libhdPhantom.so", r"lib/inkwell/dropins/libhdPhantom\.so"),

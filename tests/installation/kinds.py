@@ -6,7 +6,7 @@ LIBRARY = r"lib/(?:[\w-]+-linux-gnu/)?"
 # Files of each package, relative to the prefix.
 KINDS = {
     "inkwell": [
-        r"bin/inkwell", r"bin/virtual-board",
+        r"bin/inkwell", r"bin/virtual-board", r"lib/inkwell/helpers/inkwell-import",
         LIBRARY + r"libinkwell\.so\.1", LIBRARY + r"libinkwell\.so\.\d+\.\d+\.\d+",
         r"lib/inkwell/dropins/libHD\.so", r"lib/inkwell/dropins/libHD\.so\.3\.0", r"lib/inkwell/dropins/libHD\.so\.3\.4",
         r"lib/inkwell/dropins/libhdPhantom\.so",

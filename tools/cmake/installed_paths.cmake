@@ -12,11 +12,14 @@ set(INKWELL_ARMS_PATH ${CMAKE_INSTALL_DATADIR}/inkwell/arms)
 # Programs and images are architecture-dependent, so Debian places them in lib/.
 set(INKWELL_FIRMWARE_PATH lib/inkwell/firmware)
 set(INKWELL_DROPINS_PATH lib/inkwell/dropins)
+# Programs that only other programs start.
+set(INKWELL_HELPERS_PATH lib/inkwell/helpers)
 
 # Creates links at the same locations in the build directory, so that built programs find their files like installed
 # programs. A link may be created before its target is built.
 function(inkwell_link_installed_paths)
   foreach(link ${INKWELL_PROGRAMS_PATH}/virtual-board=${PROJECT_BINARY_DIR}/virtual-board
+               ${INKWELL_HELPERS_PATH}/inkwell-import=${PROJECT_BINARY_DIR}/inkwell-import
                ${INKWELL_ARMS_PATH}=${PROJECT_SOURCE_DIR}/boards/arms
                ${INKWELL_FIRMWARE_PATH}=${PROJECT_BINARY_DIR}/../board
                ${INKWELL_DROPINS_PATH}=${PROJECT_BINARY_DIR}/dropins)

@@ -36,5 +36,6 @@ std::filesystem::path virtual_board() { return prefix() / INKWELL_PROGRAMS_PATH 
 std::filesystem::path firmware(const std::string& image) { return prefix() / INKWELL_FIRMWARE_PATH / image; }
 std::filesystem::path default_arm() { return prefix() / INKWELL_ARMS_PATH / "omni.toml"; }
 std::filesystem::path dropins() { return prefix() / INKWELL_DROPINS_PATH; }
+std::filesystem::path import_helper() { return prefix() / INKWELL_HELPERS_PATH / "inkwell-import"; }
 
 }  // namespace inkwell::installation

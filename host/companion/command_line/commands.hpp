@@ -47,6 +47,7 @@ struct CommandContext {
   X(record)                 \
   X(replay)                 \
   X(plot)                   \
+  X(mesh)                   \
   X(run)                    \
   X(flash)
 
