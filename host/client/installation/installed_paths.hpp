@@ -16,7 +16,7 @@ std::filesystem::path prefix();
 std::filesystem::path virtual_board();  ///< the program
 /// ELF file of a firmware image.
 std::filesystem::path firmware(const std::string& image = "inkwell.elf");
-std::filesystem::path default_arm();  ///< the description of the Omni
+std::filesystem::path default_arm();    ///< the description of the Omni
 std::filesystem::path dropins();        ///< folder of the drop-in libraries
 std::filesystem::path import_helper();  ///< the program that reads objects with libraries
 
