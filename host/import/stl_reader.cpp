@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/text_file.hpp"
+
 #include "host/import/error.hpp"
 #include "host/import/readers.hpp"
 #include "host/import/text_scanner.hpp"
@@ -16,7 +18,7 @@ static_assert(std::endian::native == std::endian::little, "binary STL files are 
 constexpr std::size_t header_bytes = 84, triangle_bytes = 50, normal_bytes = 12;
 
 std::string_view stl_text(std::span<const std::byte> file) {
-  return {reinterpret_cast<const char*>(file.data()), file.size()};
+  return local::without_byte_order_mark({reinterpret_cast<const char*>(file.data()), file.size()});
 }
 
 std::uint32_t triangle_count(std::span<const std::byte> file) {

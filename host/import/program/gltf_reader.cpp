@@ -24,7 +24,11 @@ namespace {
   throw Error(fmt::format("{} {}. Export the file again.", name, problem));
 }
 
-// ---- Required extensions
+[[noreturn]] void refuse_version(const std::string& name) {
+  throw Error(fmt::format("{} has another version of glTF than 2. Export the object as glTF 2.", name));
+}
+
+// ---- Version and required extensions
 
 /// Extensions that do not change the shape. Names that end with _ are prefixes.
 constexpr std::array harmless_extensions{"KHR_mesh_quantization", "KHR_lights_punctual", "KHR_materials_",
@@ -44,15 +48,23 @@ std::string_view json_text(std::span<const std::byte> file, const std::string& n
   if (file.size() < header_bytes + chunk_header_bytes) refuse_gltf(name, "is incomplete");
   std::uint32_t size = 0;
   std::memcpy(&size, file.data() + header_bytes, sizeof size);
+  std::uint32_t version = 0;
+  std::memcpy(&version, file.data() + 4, sizeof version);
+  if (version != 2) refuse_version(name);
   if (size > file.size() - header_bytes - chunk_header_bytes) refuse_gltf(name, "is incomplete");
   return text.substr(header_bytes + chunk_header_bytes, size);
 }
 
-/// tinygltf loads files with unknown required extensions as if these were absent.
-void check_extensions(std::span<const std::byte> file, const std::string& name) {
+/// tinygltf loads files of version 1 without their meshes, and files with unknown required extensions as if
+/// these were absent.
+void check_version_and_extensions(std::span<const std::byte> file, const std::string& name) {
   const auto text = json_text(file, name);
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) refuse_gltf(name, "does not contain valid JSON, so it is not a glTF file or it is incomplete");
+  const auto asset = json.find("asset");
+  const bool is_version_2 =
+      asset != json.end() && asset->is_object() && asset->value("version", std::string()).starts_with("2");
+  if (!is_version_2) refuse_version(name);
   const auto found = json.find("extensionsRequired");
   if (found == json.end() || !found->is_array()) return;
   for (const auto& extension : *found)
@@ -112,7 +124,8 @@ tinygltf::Model load_model(std::span<const std::byte> file, const std::filesyste
           : loader.LoadASCIIFromString(&model, &error, &warning, text.data(), size, folder);
   if (!is_loaded) {
     std::ranges::replace(error, '\n', ' ');
-    throw Error(fmt::format("{} is not a valid glTF file: {} Export the file again, together with its .bin files.",
+    while (error.ends_with(' ') || error.ends_with('.')) error.pop_back();
+    throw Error(fmt::format("{} is not a valid glTF file ({}). Export the file again, together with its .bin files.",
                             name, error));
   }
   return model;
@@ -398,7 +411,7 @@ class GltfScene {
 
 FileContent read_gltf(const std::filesystem::path& file, const std::string& name) {
   const auto bytes = read_file(file, name);
-  check_extensions(bytes, name);
+  check_version_and_extensions(bytes, name);
   return GltfScene(load_model(bytes, file, name), name).read();
 }
 

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "host/client/local/text_file.hpp"
+
 #include "host/import/error.hpp"
 #include "host/import/polygon.hpp"
 #include "host/import/program/object_readers.hpp"
@@ -99,7 +101,8 @@ class ObjContent {
 
 FileContent read_obj(const std::filesystem::path& file, const std::string& name) {
   const auto bytes = read_file(file, name);
-  std::istringstream lines(prepared_lines({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name));
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::istringstream lines(prepared_lines(local::without_byte_order_mark(text), name));
   ObjContent object(name);
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = [](void* user_data, double x, double y, double z, double) {

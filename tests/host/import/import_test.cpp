@@ -207,7 +207,7 @@ TEST_CASE("repairs and open meshes are reported") {
 
 TEST_CASE("OBJ files are imported: comments, line ends, relative indices, continued lines and polygons") {
   const Folder folder;
-  check_cube(folder.import("cube.obj", cube_obj()), 0.02);
+  check_cube(folder.import("cube.obj", "\xEF\xBB\xBF" + cube_obj()), 0.02);
   check_cube(folder.import("cube.OBJ", cube_obj("\r\n")), 0.02);
   const auto object =
       folder.import("relative.obj",
@@ -345,7 +345,10 @@ TEST_CASE("an invalid glTF file is refused with a sentence") {
     CHECK(contains(folder.refusal("a.glb", glb.substr(0, size)), "a.glb"));
   CHECK(contains(folder.refusal("a.glb", glb.substr(0, glb.size() - 100)), "a.glb"));
   CHECK(contains(folder.refusal("a.gltf", "{"), "valid JSON"));
-  CHECK(contains(folder.refusal("a.gltf", "{}"), "a.gltf"));
+  CHECK(contains(folder.refusal("a.gltf", R"({"asset": {"version": "1.0"}})"), "another version of glTF than 2"));
+  auto old = glb;
+  old[4] = 1;
+  CHECK(contains(folder.refusal("a.glb", old), "another version of glTF than 2"));
   CHECK(contains(folder.refusal("a.gltf", good.json("none.bin")), "none.bin"));
   CHECK(contains(folder.refusal("a.gltf", good.json("/dev/zero")), "a.gltf"));
   const auto broken = [&](const auto& change) {
@@ -477,7 +480,8 @@ TEST_CASE("the helper program ends at its limits of memory and time, and when th
   folder.write("8.wrl", vrml(face_set()));
   CHECK(contains(refusal({.limits = {.processor_time = std::chrono::seconds(1)}}),
                  "needs more than 1 s of processor time"));
-  CHECK(contains(refusal({.limits = {.memory_bytes = 200'000'000}}), "0.wrl"));
+  CHECK(contains(refusal({.limits = {.memory_bytes = 200'000'000, .processor_time = std::chrono::seconds(20)}}),
+                 "0.wrl"));
   CHECK(contains(refusal({.limits = {.wall_time = std::chrono::seconds(0)}}), "takes longer than 0 s"));
   int calls = 0;
   CHECK(contains(refusal({.progress = [&](double) { return ++calls < 4; }}), "canceled"));

@@ -42,6 +42,7 @@ TEST_CASE("an ASCII STL file is read with all line ends, in upper case, and with
   CHECK(read(text).faces.size() == 12);
   CHECK(read(ascii_stl(make_cube(20), "\r\n")).faces.size() == 12);
   CHECK(read(ascii_stl(make_cube(20), "\r")).faces.size() == 12);
+  CHECK(read("\xEF\xBB\xBF" + text).faces.size() == 12);
   CHECK(read("  " + text + text).faces.size() == 24);
   std::string upper = text;
   std::ranges::transform(upper, upper.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
