@@ -387,6 +387,14 @@ TEST_CASE("VRML files are imported: transforms, DEF and USE, Inline, ccw FALSE a
   folder.write("part.wrl", vrml(face_set()));
   check_cube(folder.import("whole.wrl", vrml("Inline { url \"part.wrl\" }"), in_mm), 0.02);
   check_cube(folder.import("cube.WRL", vrml(face_set("solid FALSE creaseAngle 0.5")), in_mm), 0.02);
+  // Nodes without a shape, a missing picture and a prototype.
+  check_cube(
+      folder.import("scene.wrl",
+                    vrml("WorldInfo { title \"Test\" } Viewpoint { } PROTO Part [ field SFVec3f size 1 1 1 ] { Shape { "
+                         "geometry Box { size IS size } } } Part { size 20 20 20 } Shape { appearance Appearance { "
+                         "texture ImageTexture { url \"none.jpg\" } } }"),
+                    in_mm),
+      0.02);
   REQUIRE(
       std::system(fmt::format("gzip -c '{}' > '{}'", (folder / "cube.wrl").string(), (folder / "cube.wrl.gz").string())
                       .c_str()) == 0);
