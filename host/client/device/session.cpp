@@ -94,4 +94,9 @@ void Session::on_scope(std::function<void(const ScopeSamples&)> receive) {
   implementation_->receive_scope = std::move(receive);
 }
 
+void Session::on_pose(std::function<void(Device&, const DrivenPose&)> receive) {
+  const std::lock_guard lock(implementation_->mutex);
+  implementation_->new_receive_pose = std::move(receive);
+}
+
 }  // namespace inkwell::device

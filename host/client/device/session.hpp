@@ -58,6 +58,15 @@ struct Reconnection {
   protocol::ParameterSet after{};   ///< parameter values after the reconnection
 };
 
+/// A pose that arrived while the session drives the arm.
+struct DrivenPose {
+  const Pose& pose;
+  const protocol::ParameterSet& parameters;
+  std::uint64_t parameters_revision;  ///< increases with each change of the parameters
+  bool is_first;                      ///< first pose since this session has become the driver
+  bool is_newest;                     ///< false if the next pose has already arrived
+};
+
 class Session {
  public:
   /// Calls `find` repeatedly while no device is connected.
@@ -102,6 +111,10 @@ class Session {
   void select_signals(std::vector<protocol::Signal> signals);
   /// The session's scope thread calls `receive` for every frame. Call on_scope() before the first selection.
   void on_scope(std::function<void(const ScopeSamples&)> receive);
+  /// The session's report thread calls `receive` for every pose while this session drives the arm. `receive` may send
+  /// forces and local models. It must neither wait nor allocate memory, except at the first pose of a claim. If
+  /// `receive` throws Error, the session shows the message and does not call `receive` again until the next claim.
+  void on_pose(std::function<void(Device&, const DrivenPose&)> receive);
 
  private:
   struct Implementation;

@@ -116,11 +116,14 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
   std::optional<Pose> before;
   std::uint8_t parity = 0;
   bool was_silent = false;
+  std::optional<Pose> waiting;  ///< read to find out whether the previous pose is the newest pose
   while (!stopping) {
-    if (const auto pose = served->read_pose(1ms)) {
+    if (const auto pose = waiting ? std::exchange(waiting, std::nullopt) : served->read_pose(1ms)) {
+      waiting = served->read_pose(0ms);
       last_pose = Clock::now();
       ++poses_in_window;
       take_pose(*pose, sequence);
+      pass_on(*served, *pose, !waiting);
       follow_fault(*served, *pose, refreshed_at_periods ? std::optional(newest_periods) : std::nullopt);
       newest_periods = pose->time_periods;
       note_events(std::exchange(before, pose), *pose);
@@ -182,6 +185,26 @@ void Session::Implementation::take_pose(const Pose& pose, std::optional<std::int
   if (sequence && pose.sequence > *sequence)
     state.poses_lost += static_cast<std::uint64_t>(pose.sequence - *sequence - 1);
   sequence = pose.sequence;
+}
+
+void Session::Implementation::pass_on(Device& device, const Pose& pose, bool is_newest) {
+  {
+    const std::lock_guard lock(mutex);
+    if (new_receive_pose) receive_pose = std::move(*new_receive_pose);
+    new_receive_pose.reset();
+  }
+  const bool is_first = !std::exchange(passed_on, device.drives());
+  if (is_first) receiver_failed = false;
+  if (!passed_on || !receive_pose || receiver_failed) return;
+  try {
+    // Only this thread changes the parameters.
+    receive_pose(device, {pose, *parameter_set, revision, is_first, is_newest});
+  } catch (const Disconnected&) {
+    throw;
+  } catch (const Error& error) {
+    receiver_failed = true;
+    show_problem(error);
+  }
 }
 
 void Session::Implementation::note_events(const std::optional<Pose>& before, const Pose& pose) {
@@ -319,7 +342,7 @@ void Session::Implementation::take_over(Device& device) {
   }
 }
 
-void Session::Implementation::show_problem(const InUse& error) {
+void Session::Implementation::show_problem(const Error& error) {
   const std::lock_guard lock(mutex);
   state.command_problem = error.what();
   events.add(event_now(EventKind::connection, error.what(), std::nullopt));

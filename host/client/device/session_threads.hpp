@@ -39,6 +39,8 @@ struct Session::Implementation {
   std::shared_ptr<Device> connect(const Endpoint& endpoint);
   void serve(const std::shared_ptr<Device>& served);
   void take_pose(const Pose& pose, std::optional<std::int64_t>& sequence);
+  /// Calls the receiver of poses if this session drives the arm.
+  void pass_on(Device& device, const Pose& pose, bool is_newest);
   void note_events(const std::optional<Pose>& before, const Pose& pose);
   /// Logs all losses of one rate window as one event, because a bad cable could fill the log. Requires the mutex.
   void note_losses(std::int64_t at_periods);
@@ -51,7 +53,7 @@ struct Session::Implementation {
   /// Shows a refusal to the user. A refusal does not close the connection.
   void carry_out(Device& device, const QueuedCommand& queued);
   void take_over(Device& device);
-  void show_problem(const InUse& error);
+  void show_problem(const Error& error);
   /// Fades the force out before a session closes. Otherwise the board would raise a fault.
   void let_force_fall(Device& device);
   /// Releases the arm if this session has not used it recently.
@@ -121,6 +123,10 @@ struct Session::Implementation {
   std::vector<protocol::Signal> signals;
   bool scope_denied = false;  ///< another program uses the scope
   std::function<void(const ScopeSamples&)> receive_scope;
+  std::optional<std::function<void(Device&, const DrivenPose&)>> new_receive_pose;  ///< for the report thread
+  std::function<void(Device&, const DrivenPose&)> receive_pose;                     ///< only for the report thread
+  bool passed_on = false;          ///< the previous pose was passed on
+  bool receiver_failed = false;    ///< during this claim
   std::thread report_thread, scope_thread;  ///< declared last, because the threads use all other members
 };
 
