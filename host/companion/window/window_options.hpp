@@ -11,6 +11,7 @@
 #include "host/client/device/address.hpp"
 #include "host/companion/window/frame/palette.hpp"
 #include "host/companion/window/frame/window_size.hpp"
+#include "host/companion/window/scene/shown_object.hpp"
 #include "protocol/parameters.hpp"
 
 namespace inkwell::window {
@@ -54,6 +55,13 @@ struct WindowOptions {
   std::string layout;  ///< initial layout of the scope, e.g. "paper"; empty: the saved layout
 
   ReplayRequest replay;
+
+  /// Returns the objects of the scene. Called in the window's thread for each frame, and up to 60 times per second at
+  /// rest, so the function must be fast. Null: no objects.
+  std::function<std::vector<ShownObject>()> shown_objects = {};
+  /// Returns the points at which the tip touches objects, in workspace axes. Called like `shown_objects`. Null: no
+  /// points.
+  std::function<std::vector<glm::vec3>()> contact_points_m = {};
 
   std::filesystem::path screenshot;       ///< if set: write the framebuffer to this PNG file and close
   double after_seconds = 3.0;             ///< time of the screenshot after the first frame

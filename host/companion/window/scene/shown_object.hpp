@@ -1,0 +1,23 @@
+// Objects that the scene shows next to arm and walls.
+#pragma once
+
+#include <memory>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "host/geometry/mesh.hpp"
+
+namespace inkwell::window {
+
+/// A mesh and its placement in workspace axes. The mesh must not change while any ShownObject refers to it, because
+/// the window prepares each mesh only once.
+struct ShownObject {
+  std::shared_ptr<const geometry::Mesh> mesh;  ///< null: nothing is shown
+  glm::vec3 position_m{0.0f};                  ///< of the origin of the mesh
+  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  ///< unit quaternion, from mesh axes to workspace axes
+
+  bool operator==(const ShownObject&) const = default;
+};
+
+}  // namespace inkwell::window
