@@ -258,6 +258,51 @@ TEST_CASE("while another program drives, a session reports this, can stop the fo
   CHECK(problem().empty());
 }
 
+TEST_CASE("a receiver of poses is called while the session drives the arm, and stops after an error") {
+  FakeUsbipServer server;
+  std::atomic<int> received = 0, first = 0, newest = 0;
+  std::atomic<bool> fails = false;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  session.on_pose([&](device::Device& device, const device::DrivenPose& driven) {
+    if (fails) throw device::Error("The receiver failed.");
+    ++received;
+    first += driven.is_first ? 1 : 0;
+    newest += driven.is_newest ? 1 : 0;
+    CHECK(device.drives());
+    CHECK(driven.parameters == server.parameters);
+  });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  std::uint32_t sequence = 0;
+  const auto send_pose = [&] {
+    auto pose = pose_at(++sequence * 20);
+    pose.sequence = sequence;
+    pose.state = protocol::State::active;
+    pose.driver_parity = 1;  // of the session's claim
+    const auto before = session.status().poses_received;
+    server.send(1, bytes_of(pose));
+    REQUIRE(eventually([&] { return session.status().poses_received > before; }));
+  };
+  send_pose();
+  send_pose();
+  CHECK(received == 0);
+  session.send(protocol::Command::enable_force);
+  REQUIRE(eventually([&] { return was_sent(server, protocol::Command::enable_force); }));
+  for (int i = 0; i < 5; ++i) send_pose();
+  // The status is updated before the call.
+  CHECK(eventually([&] { return received >= 4; }));
+  CHECK(first == 1);
+  CHECK(newest > 0);
+  fails = true;
+  send_pose();
+  CHECK(eventually([&] { return session.status().command_problem == "The receiver failed."; }));
+  fails = false;
+  const int before = received;
+  send_pose();
+  send_pose();
+  CHECK(received == before);
+  CHECK(is_connected(session));
+}
+
 TEST_CASE("pending changes of a broken connection still reach the device") {
   FakeUsbipServer server;
   server.parameters[Parameter::sphere_radius_m] = 0.004f;
