@@ -372,7 +372,7 @@ TEST_CASE("every command explains itself") {
       "parameters save", "parameters diff", "parameters arm", "parameters store", "parameters restore",
       "parameters stored", "parameters factory", "experiment", "experiment wall", "calibrate", "tune",
       "tune current-loop", "check", "check connection", "check directions", "measure", "measure delay", "record", "replay", "plot",
-      "mesh", "reference", "signals", "run", "devices", "arms", "arms bind", "arms unbind", "fault",
+      "feel", "mesh", "reference", "signals", "run", "devices", "arms", "arms bind", "arms unbind", "fault",
       "fault clear", "self-test", "force", "force on", "force off",
       "flash"};
   // clang-format on

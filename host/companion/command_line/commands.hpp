@@ -16,8 +16,8 @@
 
 namespace inkwell::command_line {
 
-/// Opens the window and returns the exit code. An empty file name disables the replay.
-using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
+/// Opens the window and returns the exit code. `adapt` changes the options of the command line.
+using OpenWindow = std::function<int(const std::function<void(window::WindowOptions&)>& adapt)>;
 
 /// Arguments of the add_NAME_command() functions.
 struct CommandContext {
@@ -48,6 +48,7 @@ struct CommandContext {
   X(replay)                 \
   X(plot)                   \
   X(mesh)                   \
+  X(feel)                   \
   X(run)                    \
   X(flash)
 

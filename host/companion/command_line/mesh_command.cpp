@@ -6,37 +6,22 @@
 #include <nlohmann/json.hpp>
 
 #include "host/client/command_line/help.hpp"
-#include "host/client/device/open_arm.hpp"
-#include "host/client/installation/installed_paths.hpp"
 #include "host/geometry/repair.hpp"
 #include "host/import/import.hpp"
 #include "host/import/placement.hpp"
+
+#include "host/companion/command_line/arm_workspace.hpp"
 
 namespace inkwell::command_line {
 namespace {
 
 using nlohmann::ordered_json;
-using protocol::Parameter;
 
 struct MeshOptions {
   std::string file;
   std::string unit;
   double scale = 1;
 };
-
-/// The box in which the arm moves, from the arm description.
-geometry::Box workspace_of(const DeviceOptions& options) {
-  constexpr std::array minima{Parameter::box_minimum_x_m, Parameter::box_minimum_y_m, Parameter::box_minimum_z_m};
-  constexpr std::array maxima{Parameter::box_maximum_x_m, Parameter::box_maximum_y_m, Parameter::box_maximum_z_m};
-  geometry::Box box{};
-  for (const auto& [parameter, value] :
-       device::arm_parameters(options.arm.empty() ? installation::default_arm() : options.arm))
-    for (int axis = 0; axis < 3; ++axis) {
-      if (parameter == minima[static_cast<std::size_t>(axis)]) box.minimum_m[axis] = static_cast<float>(value);
-      if (parameter == maxima[static_cast<std::size_t>(axis)]) box.maximum_m[axis] = static_cast<float>(value);
-    }
-  return box;
-}
 
 importer::Object import_mesh(const MeshOptions& options) {
   importer::ImportOptions import{.scale = options.scale};
@@ -110,7 +95,7 @@ void print(const importer::Object& object, const std::vector<std::string>& remar
 }
 
 int report_mesh(const DeviceOptions& device_options, const MeshOptions& options) {
-  const geometry::Box workspace = workspace_of(device_options);
+  const geometry::Box workspace = arm_workspace(device_options);
   const importer::Object object = import_mesh(options);
   std::vector<std::string> remarks = object.remarks;
   if (std::string remark = importer::size_remark(object.report.measurements.box, workspace); !remark.empty())

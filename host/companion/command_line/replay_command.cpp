@@ -129,7 +129,9 @@ void add_replay_command(const CommandContext& context) {
       if (replay_options->log) return print_log(replay_options->file);
       return context.device.json || replay_options->information
                  ? describe(context.device, replay_options->file)
-                 : context.open_window({replay_options->file, replay_options->over, replay_options->align});
+                 : context.open_window([&](window::WindowOptions& options) {
+                     options.replay = {replay_options->file, replay_options->over, replay_options->align};
+                   });
     };
   });
 }

@@ -1,5 +1,7 @@
 #include "host/companion/command_line/commands.hpp"
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,8 +20,8 @@ namespace inkwell::command_line {
 namespace {
 
 /// The completion generator identifies the window options by the word "Window" in their group name.
-constexpr char window_group[] = "Window (without a command, or with replay)";
-constexpr std::string_view command_with_window = "replay";
+constexpr char window_group[] = "Window (without a command, or with replay or feel)";
+constexpr std::array<std::string_view, 2> commands_with_window{"replay", "feel"};
 
 /// Returns the names of the built-in layouts in the format of the help text. User-defined layouts are valid but not
 /// listed.
@@ -140,24 +142,24 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
                   "Control socket of the --usbip virtual board for mouse and faults: HOST:PORT or unix:PATH")
       ->type_name("ADDRESS")
       ->group(group);
-  const OpenWindow open = [&options, settings](const window::ReplayRequest& replay) {
-    settings->window.replay = replay;
+  const OpenWindow open = [&options, settings](const std::function<void(window::WindowOptions&)>& adapt) {
+    adapt(settings->window);
     settings->window.persist_settings = !settings->forget;
     return open_window(options, settings->window, settings->control, settings->theme);
   };
-  action = [open] { return open({}); };
+  action = [open] { return open([](window::WindowOptions&) {}); };
   return open;
 }
 
 void refuse_window_options_in_vain(const CLI::App& program) {
   const auto commands = program.get_subcommands();
-  if (commands.empty() || commands.front()->get_name() == command_with_window) return;
+  if (commands.empty() || std::ranges::count(commands_with_window, commands.front()->get_name()) > 0) return;
   for (const CLI::Option* option : program.get_options())
     if (option->get_group() == window_group && option->count() > 0)
       throw UsageError(
           fmt::format("{} is a window option, and `inkwell {}` opens no window. Omit it, or use it with `inkwell` "
-                      "alone or `inkwell {}`.",
-                      option->get_name(), commands.front()->get_name(), command_with_window));
+                      "alone, `inkwell {}`.",
+                      option->get_name(), commands.front()->get_name(), fmt::join(commands_with_window, "` or `inkwell ")));
 }
 
 }  // namespace inkwell::command_line

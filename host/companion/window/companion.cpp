@@ -24,7 +24,7 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       settings_(settings),
       fonts_(scale),
       style_{&palette(settings.theme), fonts_.fonts(), scale},
-      desk_(options.list_devices, options.serial_number),
+      desk_(options.list_devices, options.serial_number, options.on_pose),
       updater_(options.firmware, options.board),
       scope_pane_(settings.scope),
       column_({.desk = desk_,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/client/device/address.hpp"
+#include "host/client/device/session.hpp"
 #include "host/companion/window/frame/palette.hpp"
 #include "host/companion/window/frame/window_size.hpp"
 #include "host/companion/window/scene/shown_object.hpp"
@@ -62,6 +63,8 @@ struct WindowOptions {
   /// Returns the points at which the tip touches objects, in workspace axes. Called like `shown_objects`. Null: no
   /// points.
   std::function<std::vector<glm::vec3>()> contact_points_m = {};
+  /// For Session::on_pose() of each device.
+  std::function<void(device::Device&, const device::DrivenPose&)> on_pose = {};
 
   std::filesystem::path screenshot;       ///< if set: write the framebuffer to this PNG file and close
   double after_seconds = 3.0;             ///< time of the screenshot after the first frame

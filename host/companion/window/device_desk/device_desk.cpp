@@ -11,8 +11,11 @@ namespace {
 constexpr std::size_t scope_frames_maximum = 20'000;  // about ten seconds without a drawn frame
 }
 
-DeviceDesk::DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number)
-    : list_devices_(std::move(list_devices)), wanted_(std::move(serial_number)) {
+DeviceDesk::DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number,
+                       PoseReceiver receive_pose)
+    : list_devices_(std::move(list_devices)),
+      receive_pose_(std::move(receive_pose)),
+      wanted_(std::move(serial_number)) {
   open_session();
   searcher_ = std::jthread([this](const std::stop_token& stop) {
     using namespace std::chrono_literals;
@@ -57,6 +60,7 @@ void DeviceDesk::open_session() {
     const std::scoped_lock lock(mutex_);
     if (scope_.size() < scope_frames_maximum) scope_.push_back(samples);
   });
+  if (receive_pose_) session_->on_pose(receive_pose_);
   if (!signals_.empty()) session_->select_signals(signals_);
 }
 

@@ -30,9 +30,13 @@ struct DeviceView {
   protocol::State state() const { return pose ? pose->state : protocol::State::starting; }
 };
 
+/// For Session::on_pose().
+using PoseReceiver = std::function<void(device::Device&, const device::DrivenPose&)>;
+
 class DeviceDesk {
  public:
-  DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number);
+  DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number,
+             PoseReceiver receive_pose = {});
   ~DeviceDesk();
 
   /// Reads the device data. Call at the start of a frame.
@@ -65,6 +69,7 @@ class DeviceDesk {
   std::vector<device::Endpoint> find_endpoints();
 
   std::function<std::vector<device::Endpoint>()> list_devices_;
+  PoseReceiver receive_pose_;
   std::string wanted_;
   std::optional<std::string> choice_;
   DeviceView view_;
