@@ -19,7 +19,7 @@ def names_in_help(help_text):
 
 def names_in_page(page, section):
     text = page.split(f"## {section}\n", 1)[1].split("\n## ", 1)[0]
-    rows = re.findall(r"^\| `([^`]+)` \| (.+) \|$", text, re.MULTILINE)
+    rows = re.findall(r"^- `([^`]+)`: (.+)$", text, re.MULTILINE)
     for name, purpose in rows:
         if len(purpose) < 10:
             print(f"{section}: {name} does not say what it is for")
