@@ -25,8 +25,9 @@ device::LocalModel device_model(const contact::LocalModel& model) {
   converted.count = model.count;
   for (std::size_t number = 0; number < model.count; ++number) {
     const contact::Feature& feature = model.features[number];
-    converted.features[number] = {kind_of(feature.kind), array_of(feature.direction), array_of(feature.point_m),
-                                  feature.radius_m,      feature.material,            feature.moves};
+    converted.features[number] = {kind_of(feature.kind),     array_of(feature.direction),
+                                  array_of(feature.point_m), feature.radius_m,
+                                  feature.material,          feature.moves};
   }
   converted.anchor_m = array_of(model.anchor_m);
   converted.velocity_m_per_s = array_of(model.velocity_m_per_s);

@@ -49,8 +49,8 @@ void Grab::end(contact::Object& object) {
 void Grab::add(const Sample& sample) {
   if (count_ > 0 && sample.time_s < samples_[count_ - 1].time_s) count_ = 0;
   const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(count_);
-  auto first = std::find_if(samples_.begin(), end,
-                            [&](const Sample& each) { return sample.time_s - each.time_s <= span_s; });
+  auto first =
+      std::find_if(samples_.begin(), end, [&](const Sample& each) { return sample.time_s - each.time_s <= span_s; });
   if (first == samples_.begin() && count_ == samples_.size()) ++first;
   count_ = static_cast<std::size_t>(std::move(first, end, samples_.begin()) - samples_.begin());
   samples_[count_++] = sample;

@@ -21,8 +21,8 @@ struct LoadRequest {
   std::filesystem::path file;  ///< ignored if `example` is not empty
   std::string example;         ///< name of a geometry::Example
   std::optional<importer::Unit> unit{};
-  double scale = 1;      ///< factor for all lengths; positive
-  bool is_fit = false;   ///< scale the object to the workspace
+  double scale = 1;     ///< factor for all lengths; positive
+  bool is_fit = false;  ///< scale the object to the workspace
   geometry::Box workspace;
 };
 

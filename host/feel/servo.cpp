@@ -58,8 +58,8 @@ void Servo::follow_parameters(const device::DrivenPose& driven) {
   knows_parameters_ = true;
   known_revision_ = driven.parameters_revision;
   arm_ = control::prepare(driven.parameters).arm;
-  const double radius_m = std::max(static_cast<double>(driven.parameters[protocol::Parameter::sphere_radius_m]),
-                                   contact::tip_radius_min_m);
+  const double radius_m =
+      std::max(static_cast<double>(driven.parameters[protocol::Parameter::sphere_radius_m]), contact::tip_radius_min_m);
   // A larger tip would overlap the touched object.
   if (radius_m != tool_.radius_m) tool_.is_placed = false;
   tool_.radius_m = radius_m;
@@ -133,8 +133,8 @@ void Servo::follow(device::Device& device, const device::DrivenPose& driven) {
     materials_are_new_ = false;
   }
   if (!model) return;
-  device.send_local_model(*model, {.mode = protocol::ForceMode::none,
-                                   .pose_sequence = static_cast<std::uint32_t>(driven.pose.sequence)});
+  device.send_local_model(
+      *model, {.mode = protocol::ForceMode::none, .pose_sequence = static_cast<std::uint32_t>(driven.pose.sequence)});
   ++counters_.models_sent;
 }
 

@@ -64,8 +64,8 @@ class Servo {
 
   contact::Publication& publication_;
   const contact::Scene* published_ = nullptr;
-  /// Copy of the published scene with the moved objects. Its pointers to surfaces own nothing, so that this thread never
-  /// frees a mesh. The published scene owns the surfaces.
+  /// Copy of the published scene with the moved objects. Its pointers to surfaces own nothing, so that this thread
+  /// never frees a mesh. The published scene owns the surfaces.
   contact::Scene scene_;
   bool materials_are_new_ = false;
   contact::Tool tool_;

@@ -126,8 +126,8 @@ TEST_CASE("the force of a killed servo fades: the model expires after 20 ms") {
   const auto gone = std::ranges::find_if(rig.seen, [](const auto& pose) { return length(pose.force_N) == 0; });
   REQUIRE(gone != rig.seen.end());
   CHECK(gone->time_periods - last_heard <= fade_ms * periods_per_ms);
-  const auto less = std::ranges::find_if(
-      rig.seen, [&](const auto& pose) { return length(pose.force_N) < 0.9 * before_N; });
+  const auto less =
+      std::ranges::find_if(rig.seen, [&](const auto& pose) { return length(pose.force_N) < 0.9 * before_N; });
   CHECK(less->time_periods - last_heard <= 25 * periods_per_ms);
   CHECK(protocol::force_is_on(rig.seen.back().state));
 }
@@ -161,8 +161,8 @@ TEST_CASE("inkwell feel: an example is felt, and its force fades when the progra
   BoardRig rig;
   rig.set({{Parameter::force_ramp_s, 0.0f}});
   rig.take_to({0, 0, 0.025});
-  RunningProgram program({"inkwell", "--usbip", rig.board.usbip().text(), "--json", "feel", "--example",
-                          "ball", "--material", "smooth", "--headless"});
+  RunningProgram program({"inkwell", "--usbip", rig.board.usbip().text(), "--json", "feel", "--example", "ball",
+                          "--material", "smooth", "--headless"});
   device::Pose pose{};
   const auto millisecond = [&] {
     rig.control.run(0.001);

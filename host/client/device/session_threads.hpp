@@ -125,8 +125,8 @@ struct Session::Implementation {
   std::function<void(const ScopeSamples&)> receive_scope;
   std::optional<std::function<void(Device&, const DrivenPose&)>> new_receive_pose;  ///< for the report thread
   std::function<void(Device&, const DrivenPose&)> receive_pose;                     ///< only for the report thread
-  bool passed_on = false;          ///< the previous pose was passed on
-  bool receiver_failed = false;    ///< during this claim
+  bool passed_on = false;                                                           ///< the previous pose was passed on
+  bool receiver_failed = false;                                                     ///< during this claim
   std::thread report_thread, scope_thread;  ///< declared last, because the threads use all other members
 };
 

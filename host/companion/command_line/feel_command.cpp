@@ -132,8 +132,10 @@ void print_status(const DeviceOptions& options, const Pose& pose, double time_s,
                            .dump());
   else
     fmt::print("{:7.1f} s  {:<10} {:5.2f} N  steps {}, longest {:.0f} us, models {}\n", time_s,
-               view.held ? "grabbed" : view.contact_count > 0 ? "touched" : "free", force_N, counters.steps,
-               1e6 * counters.longest_step_s, counters.models_sent);
+               view.held                ? "grabbed"
+               : view.contact_count > 0 ? "touched"
+                                        : "free",
+               force_N, counters.steps, 1e6 * counters.longest_step_s, counters.models_sent);
   local::flush_output();
 }
 
@@ -173,8 +175,9 @@ int feel_without_window(const DeviceOptions& device_options, double seconds, fee
 
 void check(const DeviceOptions& device_options, const FeelOptions& options) {
   if (options.file.empty() == options.example.empty())
-    throw UsageError("Name one object: a file, as in `inkwell feel skull.stl`, or an example, as in `inkwell feel "
-                     "--example ball`.");
+    throw UsageError(
+        "Name one object: a file, as in `inkwell feel skull.stl`, or an example, as in `inkwell feel "
+        "--example ball`.");
   if (!options.example.empty() && !options.unit.empty())
     throw UsageError("--unit is the unit of a file, and an example has none. Omit --unit, or use --scale.");
   if (feel::find_material(options.material) == nullptr)
@@ -193,7 +196,7 @@ int feel_object(const CommandContext& context, const FeelOptions& options) {
   publication.publish(scene_of(loaded, options));
   feel::Servo servo(publication);
   return options.is_headless ? feel_without_window(context.device, options.seconds, servo)
-                               : feel_in_window(context, loaded, servo);
+                             : feel_in_window(context, loaded, servo);
 }
 
 std::string example_names() {
@@ -229,7 +232,8 @@ void add_feel_command(const CommandContext& context) {
       "Lets the hand feel an object from a file\n"
       "\n"
       "The window shows the object, and the hand feels it while the force is on. Stylus button 1 grabs the touched\n"
-      "object, which follows the stylus until the button is released. The middle of the object is in the middle of the\n"
+      "object, which follows the stylus until the button is released. The middle of the object is in the middle of "
+      "the\n"
       "workspace.");
   const auto options = std::make_shared<FeelOptions>();
   add_object_options(*command, *options);
@@ -246,9 +250,8 @@ void add_feel_command(const CommandContext& context) {
   add_examples(*command,
                "inkwell feel skull.stl --material skin\ninkwell feel gear.wrl --unit mm --fit\n"
                "inkwell feel --example ball --virtual\ninkwell feel --example ball --headless --seconds 60");
-  command->callback([context, options] {
-    context.action = [context, options] { return feel_object(context, *options); };
-  });
+  command->callback(
+      [context, options] { context.action = [context, options] { return feel_object(context, *options); }; });
 }
 
 }  // namespace inkwell::command_line

@@ -156,10 +156,10 @@ void refuse_window_options_in_vain(const CLI::App& program) {
   if (commands.empty() || std::ranges::count(commands_with_window, commands.front()->get_name()) > 0) return;
   for (const CLI::Option* option : program.get_options())
     if (option->get_group() == window_group && option->count() > 0)
-      throw UsageError(
-          fmt::format("{} is a window option, and `inkwell {}` opens no window. Omit it, or use it with `inkwell` "
-                      "alone, `inkwell {}`.",
-                      option->get_name(), commands.front()->get_name(), fmt::join(commands_with_window, "` or `inkwell ")));
+      throw UsageError(fmt::format(
+          "{} is a window option, and `inkwell {}` opens no window. Omit it, or use it with `inkwell` "
+          "alone, `inkwell {}`.",
+          option->get_name(), commands.front()->get_name(), fmt::join(commands_with_window, "` or `inkwell ")));
 }
 
 }  // namespace inkwell::command_line

@@ -20,8 +20,9 @@ constexpr geometry::Box workspace{{-0.08f, -0.09f, -0.09f}, {0.08f, 0.09f, 0.04f
 /// PLY file with a cube. Its sides have this length in the unit of the file.
 std::filesystem::path write_cube(const TemporaryDirectory& directory, double side) {
   const Cube cube = make_cube(static_cast<float>(side));
-  std::string text = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
-                     "element face 12\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 12\nproperty list uchar int vertex_indices\nend_header\n";
   for (const glm::vec3& vertex : cube.vertices)
     text += std::to_string(vertex.x) + " " + std::to_string(vertex.y) + " " + std::to_string(vertex.z) + "\n";
   for (const geometry::Face& face : cube.faces)
