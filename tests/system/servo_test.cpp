@@ -201,6 +201,78 @@ TEST_CASE("eight planes cost at most 250 cycles while none is touched, and leave
   CHECK(rig.device->information().report.servo_cycles_longest < board::servo_cycles * 0.65);
 }
 
+namespace {
+
+/// Three features around a point, each touched 1 mm deep, with friction.
+device::LocalModel three_features(const device::Vector3& point_m, bool are_curved_and_moving) {
+  device::LocalModel model;
+  const auto coordinate = [&](std::size_t axis) { return static_cast<float>(point_m[axis]); };
+  model.anchor_m = {coordinate(0), coordinate(1), coordinate(2)};
+  model.velocity_m_per_s = {0.001f, 0.002f, -0.001f};
+  model.spin_rad_per_s = {0.25f, 0.25f, 0.0f};
+  model.count = 3;
+  for (std::size_t i = 0; i < model.count; ++i) {
+    const auto angle_rad = 2.1f * static_cast<float>(i);
+    const std::array normal{0.6f * std::cos(angle_rad), 0.6f * std::sin(angle_rad), 0.8f};
+    device::Feature& feature = model.features[i];
+    feature.kind = !are_curved_and_moving ? protocol::FeatureKind::plane
+                   : i == 0               ? protocol::FeatureKind::sphere
+                                          : protocol::FeatureKind::cylinder;
+    feature.radius_m = are_curved_and_moving ? 0.005f : 0.0f;
+    feature.moves = are_curved_and_moving;
+    feature.direction = feature.kind == protocol::FeatureKind::cylinder
+                            ? std::array{-std::sin(angle_rad), std::cos(angle_rad), 0.0f}
+                            : normal;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      feature.point_m[axis] = coordinate(axis) + (0.001f - feature.radius_m) * normal[axis];
+  }
+  return model;
+}
+
+/// Returns the longest duration of the contact stage while the features are sent each millisecond.
+float contact_cycles(BoardRig& rig, const device::LocalModel& model) {
+  while (rig.device->read_scope(std::chrono::milliseconds(0))) {
+  }
+  float longest = 0;
+  for (int i = 0; i < 150; ++i) {
+    rig.device->send_local_model(model, {.mode = protocol::ForceMode::beside_walls});
+    rig.control.run(0.001);
+    while (rig.device->read_pose(std::chrono::milliseconds(0))) {
+    }
+    while (const auto samples = rig.device->read_scope(std::chrono::milliseconds(0)))
+      if (i >= 100)  // the features have risen to the probe
+        for (const float cycles : samples->values) longest = std::max(longest, cycles);
+  }
+  return longest;
+}
+
+}  // namespace
+
+TEST_CASE("three touched curved moving features with friction cost no more than three touched planes with friction") {
+  BoardRig rig(device::SimulationMode::fast, 1, device::CyclePricing::conservative);
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.device->select_signals(std::array{Signal::stage_contact_cycles});
+  device::Shapes planes = eight_planes(free_point_m, 3, 0.4f);
+  planes.materials = {{800, 2, 0.4f, 0.2f, 0}};
+  rig.device->place_shapes(planes);
+  rig.run(0.1);
+  const float with_planes = contact_cycles(rig);
+  device::Shapes none;
+  rig.device->place_shapes(none);
+  rig.run(0.1);
+  const float with_features = contact_cycles(rig, three_features(free_point_m, true));
+  const auto& force_N = rig.pose().force_N;
+  MESSAGE("simulation: contact stage ", with_planes, " cycles with three touched planes of eight, ", with_features,
+          " with a sphere and two cylinders that move; longest control interrupt ",
+          rig.device->information().report.servo_cycles_longest, " of ", board::servo_cycles);
+  CHECK(std::hypot(force_N[0], force_N[1], force_N[2]) >= 0);
+  CHECK(with_features <= with_planes);
+  CHECK(rig.device->information().report.servo_cycles_longest < board::servo_cycles * 0.7);
+  check_figure_on_cycles_page("contact stage with three touched planes", with_planes);
+  check_figure_on_cycles_page("contact stage with three touched features", with_features);
+}
+
 TEST_CASE("the heat of a motor that presses against a wall follows its true current") {
   BoardRig rig;
   rig.make_active();
