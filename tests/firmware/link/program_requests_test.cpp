@@ -69,13 +69,13 @@ TEST_CASE("an invalid force report is counted as refused and is never returned b
     return report;
   };
   const ForceReport reports[] = {
-      [](ShapesReport& report) { report.force_N[0] = not_a_number; },
-      [](ShapesReport& report) { report.force_N[1] = infinite; },
-      [](ShapesReport& report) { report.force_N[2] = -infinite; },
-      [](ShapesReport& report) { report.interval_ms = 0; },
-      [](ShapesReport& report) { report.interval_ms = protocol::force_interval_maximum_ms + 1; },
-      [](ShapesReport& report) { report.mode = static_cast<ForceMode>(3); },
-      [](ShapesReport& report) { report.version = 0; },
+      broken([](auto& report) { report.force_N[0] = not_a_number; }),
+      broken([](auto& report) { report.force_N[1] = infinite; }),
+      broken([](auto& report) { report.force_N[2] = -infinite; }),
+      broken([](auto& report) { report.interval_ms = 0; }),
+      broken([](auto& report) { report.interval_ms = protocol::force_interval_maximum_ms + 1; }),
+      broken([](auto& report) { report.mode = static_cast<ForceMode>(3); }),
+      broken([](auto& report) { report.version = 0; }),
   };
   link::ProgramRequests requests;
   std::uint32_t refused = 0;
