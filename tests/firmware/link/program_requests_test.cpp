@@ -145,24 +145,24 @@ TEST_CASE("a plane's normal gets the length 1, and its offset is that of its poi
 
 TEST_CASE("a set of shapes is taken whole or refused whole") {
   using Change = void (*)(ShapesReport&);
-  static ShapesReport report;
+  static ShapesReport shapes;
   const auto prepare = [](Change change) {
-    report = one_plane();
-    report.plane_count = 2;
-    report.planes[1] = report.planes[0];
-    report.sphere = {{0.0f, 0.0f, 0.0f}, 0.01f, valid_surface};
-    report.solid_count = 1;
-    report.solids[0] = {.kind = protocol::SolidKind::box,
+    shapes = one_plane();
+    shapes.plane_count = 2;
+    shapes.planes[1] = shapes.planes[0];
+    shapes.sphere = {{0.0f, 0.0f, 0.0f}, 0.01f, valid_surface};
+    shapes.solid_count = 1;
+    shapes.solids[0] = {.kind = protocol::SolidKind::box,
                         .orientation = {1, 0, 0, 0},
                         .size_m = {0.01f, 0.01f, 0.01f},
                         .surface = valid_surface};
-    report.material_count = 1;
-    report.materials[0] = {800, 1, 0.5f, 0.4f, 0};
-    change(report);
+    shapes.material_count = 1;
+    shapes.materials[0] = {800, 1, 0.5f, 0.4f, 0};
+    change(shapes);
   };
   static link::ProgramRequests requests;
   prepare([](auto&) {});
-  REQUIRE(requests.accept_shapes(bytes(report)) == RequestResult::accepted);
+  REQUIRE(requests.accept_shapes(bytes(shapes)) == RequestResult::accepted);
   REQUIRE(requests.take_shapes() != nullptr);
   const Change changes[] = {
       [](ShapesReport& report) { report.version = 1; },
@@ -190,7 +190,7 @@ TEST_CASE("a set of shapes is taken whole or refused whole") {
   for (const Change change : changes) {
     CAPTURE(which++);
     prepare(change);
-    CHECK(requests.accept_shapes(bytes(report)) == RequestResult::malformed);
+    CHECK(requests.accept_shapes(bytes(shapes)) == RequestResult::malformed);
     CHECK(requests.take_shapes() == nullptr);
   }
   ShapesReport many = one_plane();
