@@ -49,8 +49,8 @@ struct Sight {
   std::string with_keyboard() const;
   /// Returns true if any text in the window contains `part`.
   bool says(const std::string& part) const;
-  /// Returns the complete name of an item in the open menu, because ImGui generates the name of a menu. Returns an empty
-  /// name without such an item.
+  /// Returns the complete name of an item in the open menu, because ImGui generates the name of a menu. Returns an
+  /// empty name without such an item.
   std::string in_menu(const std::string& item) const;
 };
 

@@ -108,7 +108,7 @@ class SignalLane {
 /// history of many signals is shorter, so that the memory is limited.
 class SignalHistory {
  public:
-  static constexpr std::size_t memory_maximum_bytes = 96 << 20;
+  static constexpr std::size_t memory_maximum_bytes = 80 << 20;
 
   explicit SignalHistory(std::size_t capacity_maximum = std::size_t{1} << 21)
       : capacity_maximum_(capacity_maximum), capacity_(capacity_maximum), shown_(capacity_), over_(capacity_) {}
