@@ -416,6 +416,10 @@ TEST_CASE("concave faces, extrusions and bodies of a VRML file are closed and ha
       "[0 1 2 3 4 -1 9 8 7 6 5 -1 0 5 6 1 -1 1 6 7 2 -1 2 7 8 3 -1 3 8 9 4 -1 4 9 5 0 -1]";
   CHECK(volume("IndexedFaceSet { convex FALSE " + arrow + " }") == doctest::Approx(10));
   CHECK(volume("IndexedFaceSet { " + arrow + " }") == doctest::Approx(10));
+  // Overlapping triangles have a larger area, but the same signed volume.
+  const auto declared_convex = folder.import("a.wrl", vrml("Shape { geometry IndexedFaceSet { " + arrow + " } }"),
+                                             {.unit = importer::Unit::meter});
+  CHECK(declared_convex.report.measurements.area_m2 == doctest::Approx(2 * 10 + 12 + 2 * std::hypot(2, 3)));
   CHECK(volume("Extrusion { crossSection [2 2, 2 -2, 0 -1, -2 -2, -2 2, 2 2] spine [0 0 0, 0 4 0] }") ==
         doctest::Approx(56));
   CHECK(volume("Box { size 1 2 3 }") == doctest::Approx(6));
