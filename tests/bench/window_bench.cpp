@@ -49,9 +49,12 @@ void push_for(device::ControlClient& control, double time_s) {
   control.hand_path(path);
 }
 
-void measure(const std::string& layout, const std::string& width, const std::string& height) {
+void measure(const std::string& layout, const std::string& width, const std::string& height,
+             const std::string& program = "inkwell", const std::vector<std::string>& more_options = {}) {
   const std::string size = width + "x" + height;
-  tests::WindowRig rig({"--layout", layout, "--width", width, "--height", height, "--frames-report"}, true, size);
+  std::vector<std::string> options{"--layout", layout, "--width", width, "--height", height, "--frames-report"};
+  options.insert(options.end(), more_options.begin(), more_options.end());
+  tests::WindowRig rig(options, true, size, program);
   std::this_thread::sleep_for(2s);
   std::printf("layout %s at %s\n  at rest: %.0f %% of a core\n", layout.c_str(), size.c_str(),
               100 * share_of_a_core(rig.window_process()));
@@ -79,4 +82,8 @@ int main(int argument_count, char** arguments) {
   for (const std::string layout : {"contact", "paper"})
     if (is_wanted(layout)) measure(layout, "1280", "800");
   if (is_wanted("overview")) measure("overview", "1920", "1080");  // eight plots
+  if (is_wanted("object")) {
+    std::printf("a rotating object of 327,680 triangles, also at rest:\n");
+    measure("contact", "1280", "800", "object-window", {"--ball", "7"});
+  }
 }

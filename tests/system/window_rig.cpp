@@ -25,9 +25,10 @@ device::VirtualBoardOptions board_options(const std::filesystem::path& elf = {},
 }
 
 std::vector<std::string> window_words(const device::VirtualBoard& board, const std::string& parameters_file,
-                                      const std::vector<std::string>& options, bool tells_control_port) {
+                                      const std::vector<std::string>& options, bool tells_control_port,
+                                      const std::string& program = "inkwell") {
   device::save_parameters(parameters_file, WindowRig::parameters_at_start());
-  std::vector<std::string> words{build_directory() + "/inkwell",
+  std::vector<std::string> words{build_directory() + "/" + program,
                                  "--usbip",
                                  board.usbip().text(),
                                  "--parameters",
@@ -72,12 +73,13 @@ WindowRig::WindowRig(OtherImage, const std::string& image, const std::string& bo
       window_(window_words(board, directory_.file("parameters.toml"), {}, true),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {}
 
-WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control_port, const std::string& screen)
+WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control_port, const std::string& screen,
+                     const std::string& program)
     : board(board_options()),
       control(board.control()),
       display_(display_command(screen)),
       display_name_("DISPLAY=:" + display_.read_line()),
-      window_(window_words(board, directory_.file("parameters.toml"), options, tells_control_port),
+      window_(window_words(board, directory_.file("parameters.toml"), options, tells_control_port, program),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
   wait_until("the device is ready and has the parameters",
              [](const Sight& sight) { return sight.state() == "ready" && sight.applied_at_periods() != 0; });

@@ -61,8 +61,9 @@ class WindowRig {
   /// Starts all programs, and waits until the window is connected and its device is referenced. `options` are options
   /// of the window. With --flat-colours the pixels have exactly the colors of palette.hpp. `screen`: size of the
   /// display in pixels. Without the control port, the window handles the virtual board like a real board.
+  /// `program` is a program of the build directory with the options of `inkwell`.
   explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true,
-                     const std::string& screen = usual_screen);
+                     const std::string& screen = usual_screen, const std::string& program = "inkwell");
 
   /// Starts the board `board_name` with the image build/board/`image`, and does not wait for the window.
   static WindowRig with_image(const std::string& image, const std::string& board_name) {

@@ -26,6 +26,7 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       style_{&palette(settings.theme), fonts_.fonts(), scale},
       desk_(options.list_devices, options.serial_number, options.on_pose),
       updater_(options.firmware, options.board),
+      objects_(options.shown_objects, options.contact_points_m),
       scope_pane_(settings.scope),
       column_({.desk = desk_,
                .parameters_file = settings_.parameters_file,
@@ -132,6 +133,7 @@ void Companion::lay_out(ImVec2 size, double now_s) {
   replay_bar_.follow(now_s, scope_pane_);
   take_keyboard_shortcuts(now_s);
   pose_ = replay_bar_.is_open() ? replay_bar_.pose() : desk_.view().pose;
+  objects_move_ = objects_.follow(replay_bar_.is_open());
 
   take_shortcuts();
   follow_fault();
@@ -231,7 +233,7 @@ void Companion::draw_scene(const WindowLayout& layout, float banner_height, doub
   const std::optional<device::Pose>& shown = differs_visibly(drawn_pose_, pose_) ? pose_ : drawn_pose_;
   const bool is_taken = scene_pane_.draw(scene_.origin, scene_.size,
                                          {style_, shown, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr,
-                                          now_s, replays, next_step, banner_height});
+                                          now_s, replays, next_step, banner_height, objects_});
   if (is_taken) take_next_step(next_step->action, outcome);
   if (replays) {
     replay_bar_.draw(layout.replay.origin, layout.replay.size, style_, scope_pane_);
@@ -321,7 +323,7 @@ void Companion::draw_scope(const WindowLayout& layout) {
 void Companion::judge_motion() {
   const bool scene_moves = differs_visibly(drawn_pose_, pose_);
   const bool is_updating = updater_.sight().phase == FirmwareUpdater::Phase::runs;
-  is_moving_ = scene_moves || is_updating || scope_pane_.saver().is_saving() || fonts_.is_loading() ||
+  is_moving_ = scene_moves || objects_move_ || is_updating || scope_pane_.saver().is_saving() || fonts_.is_loading() ||
                column_.is_moving() || replay_bar_.is_playing() ||
                (settings_.scope_is_shown && scope_pane_.take_motion());
   if (scene_moves) drawn_pose_ = pose_;
@@ -339,7 +341,8 @@ void Companion::take_picture(Pixels pixels) {
 }
 
 bool Companion::needs_frame() const {
-  return column_.is_moving() || (!replay_bar_.is_open() && differs_visibly(drawn_pose_, desk_.newest_pose()));
+  return column_.is_moving() ||
+         (!replay_bar_.is_open() && (differs_visibly(drawn_pose_, desk_.newest_pose()) || objects_.has_changed()));
 }
 
 std::uint64_t Companion::canvas_digest() const {
@@ -356,6 +359,7 @@ std::uint64_t Companion::canvas_digest() const {
   const auto parameters = shown_parameters().shown();
   digest.add_bytes(parameters.values.data(), parameters.values.size() * sizeof parameters.values[0]);
   digest.add(*style_.palette);
+  objects_.add_to(digest);
   scene_pane_.add_to(digest);
   return digest.value();
 }

@@ -18,6 +18,7 @@
 #include "host/companion/window/frame/style.hpp"
 #include "host/companion/window/panes/pane_column.hpp"
 #include "host/companion/window/scene/mouse_hand.hpp"
+#include "host/companion/window/scene/scene_objects.hpp"
 #include "host/companion/window/scene/scene_pane.hpp"
 #include "host/companion/window/scope/scope_pane.hpp"
 #include "host/companion/window/window_layout.hpp"
@@ -103,6 +104,7 @@ class Companion final : public FrameContent {
   KeyHelp key_help_;
   KeyboardTour keyboard_;
   FirmwareUpdater updater_;
+  SceneObjects objects_;
   ScenePane scene_pane_;
   ScopePane scope_pane_;
   PaneColumn column_;
@@ -115,6 +117,7 @@ class Companion final : public FrameContent {
   std::optional<device::Pose> arrived_;     ///< the device's newest pose at the start of the frame
   std::optional<device::Pose> pose_;        ///< displayed pose, from the device or from the recording
   std::optional<device::Pose> drawn_pose_;  ///< last pose that differed visibly from the previous pose
+  bool objects_move_ = false;
   bool is_moving_ = true;
   bool button_1_ = false;
   bool button_2_ = false;

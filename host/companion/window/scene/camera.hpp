@@ -33,6 +33,8 @@ struct Camera {
   glm::vec3 project(glm::vec3 point_m, glm::vec2 view_size_pixels) const;
 
   static constexpr float field_of_view_rad = 0.62f;
+
+  bool operator==(const Camera&) const = default;
 };
 
 /// Returns the intersection of the ray with a plane. The plane contains `point_m` and is perpendicular to the viewing

@@ -52,6 +52,7 @@ std::vector<WallPicture> wall_pictures(const SceneModel& scene, const Camera& ca
 Renderer::Renderer()
     : sky_(shaders::sky_vertex, shaders::sky_fragment),
       solid_(shaders::solid_vertex, shaders::solid_fragment),
+      object_(shaders::object_vertex, shaders::solid_fragment),
       shadow_(shaders::shadow_vertex, shaders::shadow_fragment),
       wall_(shaders::wall_vertex, shaders::wall_fragment) {
   glGenVertexArrays(1, &no_vertices_);
@@ -84,6 +85,14 @@ void Renderer::prepare_solids(const Camera& camera, const SceneLook& look) const
   solid_.set("to_clip", to_clip_);
   solid_.set("eye", camera.eye_m());
   solid_.set("lit", look.flat_colours ? 0.0f : 1.0f);
+}
+
+void Renderer::draw_objects(const Camera& camera, const SceneLook& look) const {
+  object_.use();
+  object_.set("eye", camera.eye_m());
+  object_.set("lit", look.flat_colours ? 0.0f : 1.0f);
+  object_.set("object_colour", scene_colours::object);
+  objects_.draw(object_, to_clip_);
 }
 
 void Renderer::draw_sky(const Palette& palette) const {
@@ -131,6 +140,7 @@ void Renderer::draw_shadows(const SceneModel& scene, const SceneLook& look) cons
   glStencilFunc(GL_EQUAL, 0, 0xFF);
   glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
   solids_.draw_shadow_casters();
+  objects_.draw_shadows(shadow_, to_clip_ * flattened);
   glDisable(GL_STENCIL_TEST);
 }
 
@@ -181,8 +191,9 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
   lines_.draw(to_clip_, size_pixels_);
 }
 
-void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera,
-                    const SceneLook& look, const Viewport& viewport) {
+void Renderer::draw(const SceneModel& scene, const std::vector<SceneObject>& objects,
+                    const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
+                    const Viewport& viewport) {
   if (viewport.width < 2 || viewport.height < 2) return;
   size_pixels_ = {viewport.width, viewport.height};
   glDisable(GL_SCISSOR_TEST);
@@ -205,9 +216,11 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
   to_clip_ =
       camera.projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height)) * camera.view();
   solids_.fill(solids_of(scene, hand, look.palette), look.flat_colours);
+  objects_.fill(objects, workspace_to_view(scene.frame));
   glEnable(GL_DEPTH_TEST);
   prepare_solids(camera, look);
   solids_.draw_opaque();
+  draw_objects(camera, look);
   // Transparent parts use the depth test but do not write depth.
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);

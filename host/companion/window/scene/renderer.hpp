@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include <epoxy/gl.h>
 
@@ -10,9 +11,11 @@
 #include "host/companion/window/scene/camera.hpp"
 #include "host/companion/window/scene/scene_look.hpp"
 #include "host/companion/window/scene/scene_model.hpp"
+#include "host/companion/window/scene/scene_objects.hpp"
 #include "host/companion/window/scene/scene_solids.hpp"
 
 #include "host/companion/window/scene/line_batch.hpp"
+#include "host/companion/window/scene/object_batch.hpp"
 #include "host/companion/window/scene/shader.hpp"
 #include "host/companion/window/scene/solid_batch.hpp"
 
@@ -26,14 +29,15 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   /// Draws into a part of the window's framebuffer. The depth and stencil buffers of this part must be clear.
-  void draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
-            const Viewport& viewport);
+  void draw(const SceneModel& scene, const std::vector<SceneObject>& objects, const std::optional<HandView>& hand,
+            const Camera& camera, const SceneLook& look, const Viewport& viewport);
 
  private:
   void show_target(const Viewport& viewport) const;
   /// Sets the size of the target. Returns true if the size has changed.
   bool size_target(int width, int height);
   void prepare_solids(const Camera& camera, const SceneLook& look) const;
+  void draw_objects(const Camera& camera, const SceneLook& look) const;
   void draw_sky(const Palette& palette) const;
   void draw_floor(const SceneModel& scene, const SceneLook& look);
   void draw_shadows(const SceneModel& scene, const SceneLook& look) const;
@@ -49,10 +53,12 @@ class Renderer {
   glm::mat4 to_clip_{1.0f};
   ShaderProgram sky_;
   ShaderProgram solid_;
+  ShaderProgram object_;
   ShaderProgram shadow_;
   ShaderProgram wall_;
   LineBatch lines_;
   SolidBatch solids_;
+  ObjectBatch objects_;
 };
 
 }  // namespace inkwell::window

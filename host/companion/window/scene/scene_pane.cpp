@@ -271,6 +271,32 @@ void ScenePane::draw_hand_label(ImDrawList& list, const Style& style, const Box&
   plate(list, style, corner, style.palette->text_quiet, label);
 }
 
+// The points are in front of all objects, because the sphere would cover the points.
+void ScenePane::draw_contact_points(ImDrawList& list, const ScenePaneInput& input) const {
+  const Style& style = input.style;
+  for (const glm::vec3 point_m : input.objects.contact_points_m()) {
+    if (camera_.project(workspace_to_view(scene_.frame) * point_m, size_).z <= 0.0f) continue;
+    const ImVec2 point = on_screen(point_m);
+    list.AddCircleFilled(point, style.points(4.5f), packed(style.palette->pane));
+    list.AddCircleFilled(point, style.points(3.0f), packed(scene_colours::wall_touched));
+    note_area("contact point", point, point);
+  }
+}
+
+// Draws the progress text at the upper right, or below the buttons in a narrow pane.
+void ScenePane::draw_progress(ImDrawList& list, const ScenePaneInput& input) const {
+  const std::string progress = input.objects.progress();
+  if (progress.empty()) return;
+  const Style& style = input.style;
+  constexpr float buttons_points = 340.0f;
+  const float left = size_.x - ImGui::CalcTextSize(progress.c_str()).x - style.points(16);
+  const ImVec2 corner = left > style.points(buttons_points)
+                            ? ImVec2{origin_.x + left, origin_.y + style.points(16)}
+                            : ImVec2{origin_.x + style.points(18), origin_.y + style.points(tools_points)};
+  plate(list, style, corner, style.palette->text, progress);
+  note_text(progress);
+}
+
 // Draws the probe position at the lower right. A wide pane also shows a help text.
 void ScenePane::draw_footer(ImDrawList& list, const ScenePaneInput& input) const {
   const Style& style = input.style;
@@ -302,6 +328,8 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
     const ImVec2 probe = on_screen(scene_.probe_m);
     list.AddCircle(probe, style.points(15), packed(scene_colours::probe.with_alpha(190)), 0, style.points(1.5f));
   }
+  draw_contact_points(list, input);
+  draw_progress(list, input);
   const Box force_plate = draw_force_label(list, style);
   if (scene_.in_contact) draw_proxy_label(list, style);
   draw_hand_label(list, style, force_plate);
@@ -313,7 +341,7 @@ void ScenePane::draw_tools(const ScenePaneInput& input) {
   const Style& style = input.style;
   ImGui::SetCursorScreenPos({origin_.x + style.points(14), origin_.y + style.points(12)});
   if (button("Reset view")) reset_view();
-  help_on_hover("", "Shows the whole box, like a double click in the scene.", style);
+  help_on_hover("", "Shows the whole box and all objects, like a double click in the scene.", style);
   if (input.hand == nullptr) return;
   ImGui::SameLine();
   ImGui::BeginDisabled(!input.hand->target_m());
@@ -418,19 +446,29 @@ void ScenePane::draw_replay_border(const Style& style) const {
   ImGui::PopFont();
 }
 
+void ScenePane::fit_view(const SceneObjects& objects) {
+  glm::vec3 minimum_m = scene_.box_minimum_m, maximum_m = scene_.box_maximum_m;
+  if (const auto box = objects.box()) {
+    minimum_m = glm::min(minimum_m, box->minimum_m);
+    maximum_m = glm::max(maximum_m, box->maximum_m);
+  }
+  const glm::mat3 to_view = workspace_to_view(scene_.frame);
+  const glm::vec3 a = to_view * minimum_m, b = to_view * maximum_m;
+  camera_ = fitted_camera_ = look_at_box(glm::min(a, b), glm::max(a, b));
+  fitted_meshes_ = objects.meshes_revision();
+  view_is_to_be_reset_ = false;
+}
+
 bool ScenePane::draw(ImVec2 origin, ImVec2 size, const ScenePaneInput& input) {
   origin_ = to_glm(origin);
   size_ = glm::max(to_glm(size), glm::vec2{1.0f});
   scene_ = build_scene(input.pose, input.editor.shown());
   const auto target_m = input.hand == nullptr ? std::nullopt : input.hand->target_m();
   hand_view_ = target_m ? std::optional(HandView{*target_m, drag_ == Drag::hand}) : std::nullopt;
-  if (view_is_to_be_reset_) {
-    const glm::mat3 to_view = workspace_to_view(scene_.frame);
-    const glm::vec3 a = to_view * scene_.box_minimum_m;
-    const glm::vec3 b = to_view * scene_.box_maximum_m;
-    camera_ = look_at_box(glm::min(a, b), glm::max(a, b));
-    view_is_to_be_reset_ = false;
-  }
+  objects_ = input.objects.objects();
+  // New objects do not change a view that the user has chosen.
+  const bool has_new_meshes = input.objects.meshes_revision() != fitted_meshes_ && camera_ == fitted_camera_;
+  if (view_is_to_be_reset_ || has_new_meshes) fit_view(input.objects);
   begin_pane("scene", origin, size, ImGuiWindowFlags_NoScrollWithMouse);
   handle_mouse(input);
   handle_keys(input);
@@ -455,7 +493,7 @@ void ScenePane::add_to(PictureDigest& digest) const {
 
 void ScenePane::draw_scene(const Viewport& viewport, SceneLook look) const {
   look.marked_wall = drag_ == Drag::wall ? std::optional(dragged_wall_) : marked_wall_;
-  renderer_->draw(scene_, hand_view_, camera_, look, viewport);
+  renderer_->draw(scene_, objects_, hand_view_, camera_, look, viewport);
 }
 
 }  // namespace inkwell::window

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "host/companion/window/device_desk/next_step.hpp"
 #include "host/companion/window/device_desk/parameter_editor.hpp"
@@ -13,6 +14,7 @@
 #include "host/companion/window/scene/mouse_hand.hpp"
 #include "host/companion/window/scene/scene_look.hpp"
 #include "host/companion/window/scene/scene_model.hpp"
+#include "host/companion/window/scene/scene_objects.hpp"
 #include "host/companion/window/scene/scene_solids.hpp"
 
 namespace inkwell::window {
@@ -26,6 +28,7 @@ struct ScenePaneInput {
   bool is_replay = false;                    ///< pose and parameters are from a recording
   const std::optional<NextStep>& next_step;  ///< shown on a card
   float covered_height = 0.0f;               ///< height of the banner below the buttons
+  const SceneObjects& objects;
 };
 
 class Renderer;
@@ -61,6 +64,8 @@ class ScenePane {
   void draw_wall_handles(ImDrawList& list, const Style& style) const;
   Box draw_force_label(ImDrawList& list, const Style& style) const;
   void draw_hand_label(ImDrawList& list, const Style& style, const Box& force_plate) const;
+  void draw_contact_points(ImDrawList& list, const ScenePaneInput& input) const;
+  void draw_progress(ImDrawList& list, const ScenePaneInput& input) const;
   void draw_footer(ImDrawList& list, const ScenePaneInput& input) const;
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
@@ -70,13 +75,18 @@ class ScenePane {
   /// Returns the corner of a card of this size that does not cover the sphere. The card moves only if it must.
   glm::vec2 card_corner(glm::vec2 card, const ScenePaneInput& input);
   void draw_replay_border(const Style& style) const;
+  /// Moves the camera so that the box and all objects are visible.
+  void fit_view(const SceneObjects& objects);
   ImVec2 on_screen(glm::vec3 workspace_point_m) const;
 
   std::unique_ptr<Renderer> renderer_;
   SceneModel scene_{};
+  std::vector<SceneObject> objects_;
   std::optional<HandView> hand_view_;
   Camera camera_;
-  bool view_is_to_be_reset_ = true;  // in the next frame, to show the whole box
+  Camera fitted_camera_;             // of the last fit_view()
+  std::uint64_t fitted_meshes_ = 0;  // SceneObjects::meshes_revision() of the last fit_view()
+  bool view_is_to_be_reset_ = true;  // in the next frame
   glm::vec2 origin_{0.0f};           // of the pane, in screen coordinates
   glm::vec2 size_{1.0f};
   Drag drag_ = Drag::none;

@@ -38,6 +38,26 @@ void main() {
   gl_Position = to_clip * vec4(position, 1.0);
 })";
 
+/// Draws an object. Position and normal are in mesh axes.
+inline constexpr char object_vertex[] = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 to_view;
+uniform mat4 to_clip;
+uniform vec4 object_colour;
+out vec3 world;
+out vec3 world_normal;
+out vec4 base_colour;
+out float shininess;
+void main() {
+  world = (to_view * vec4(position, 1.0)).xyz;
+  world_normal = mat3(to_view) * normal;
+  base_colour = object_colour;
+  shininess = 0.3;
+  gl_Position = to_clip * vec4(world, 1.0);
+})";
+
+/// With two_sided = 1, the rear side of a triangle is lit like its front side.
 inline constexpr char solid_fragment[] = R"(#version 330 core
 in vec3 world;
 in vec3 world_normal;
@@ -45,10 +65,12 @@ in vec4 base_colour;
 in float shininess;
 uniform vec3 eye;
 uniform float lit;
+uniform float two_sided;
 out vec4 colour;
 const vec3 key = vec3(0.420, 0.747, 0.514);   // of length 1
 void main() {
   vec3 n = normalize(world_normal);
+  if (two_sided > 0.5 && !gl_FrontFacing) n = -n;
   vec3 to_eye = normalize(eye - world);
   float diffuse = max(dot(n, key), 0.0);
   float sky = 0.5 + 0.5 * n.y;
