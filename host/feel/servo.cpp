@@ -54,8 +54,8 @@ contact::Object* Servo::find_object(std::uint32_t id) {
 }
 
 void Servo::follow_parameters(const device::DrivenPose& driven) {
-  if (knows_parameters_ && driven.parameters_revision == known_revision_) return;
-  knows_parameters_ = true;
+  // Another session counts its revisions from the start.
+  if (!driven.is_first && driven.parameters_revision == known_revision_) return;
   known_revision_ = driven.parameters_revision;
   arm_ = control::prepare(driven.parameters).arm;
   const double radius_m =
@@ -91,9 +91,9 @@ void Servo::follow_button(const device::Pose& pose, const HandPlacement& hand) {
 }
 
 std::optional<device::LocalModel> Servo::step(const device::DrivenPose& driven) {
+  follow_parameters(driven);
   follow_publication();
   if (published_ == nullptr) return std::nullopt;
-  follow_parameters(driven);
   const device::Pose& pose = driven.pose;
   const bool is_felt = pose.is_referenced && protocol::force_is_on(pose.state);
   if (!is_felt || driven.is_first) {

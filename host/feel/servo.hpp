@@ -73,7 +73,6 @@ class Servo {
   kinematics::VelocityFit velocity_;
   control::Arm arm_{};
   std::uint64_t known_revision_ = 0;
-  bool knows_parameters_ = false;
   Grab grab_;
   bool was_pressed_ = true;  ///< a button that is pressed at the start does not grab
   bool sent_features_ = false;

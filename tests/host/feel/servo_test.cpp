@@ -97,7 +97,8 @@ TEST_CASE("the tip has the radius of the parameter, and at least half a millimet
   ServoRig rig;
   rig.at(0.06);
   rig.parameters[protocol::Parameter::sphere_radius_m] = 0;
-  ++rig.revision;
+  SUBCASE("after a change") { ++rig.revision; }
+  SUBCASE("of another device") { rig.pose.sequence = 0; }
   rig.at(0.06);
   const auto model = rig.at(0.0304);
   REQUIRE(model);
