@@ -161,8 +161,8 @@ TEST_CASE("inkwell feel: an example is felt, and its force fades when the progra
   BoardRig rig;
   rig.set({{Parameter::force_ramp_s, 0.0f}});
   rig.take_to({0, 0, 0.025});
-  RunningProgram program({"inkwell", "--usbip", rig.board.usbip().text(), "--json", "feel", "--example", "ball",
-                          "--material", "smooth", "--headless"});
+  RunningProgram program({build_directory() + "/inkwell", "--usbip", rig.board.usbip().text(), "--json", "feel",
+                          "--example", "ball", "--material", "smooth", "--headless"});
   device::Pose pose{};
   const auto millisecond = [&] {
     rig.control.run(0.001);
@@ -170,10 +170,12 @@ TEST_CASE("inkwell feel: an example is felt, and its force fades when the progra
   };
   // The program needs some time for its answers.
   const auto run_until = [&](const auto& condition) {
-    for (int i = 0; i < 60'000 && !condition(); ++i) {
+    for (int i = 0; i < 20'000 && !condition(); ++i) {
       millisecond();
       std::this_thread::sleep_for(1ms);
     }
+    INFO("state ", std::string(protocol::info(pose.state).name), ", fault ",
+         std::string(protocol::info(pose.fault).name), ", height ", pose.position_m[2]);
     REQUIRE(condition());
   };
   run_until([&] { return protocol::force_is_on(pose.state); });

@@ -241,7 +241,7 @@ void add_feel_command(const CommandContext& context) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--smooth", options->is_smooth,
-                    "Hide the facets of curved surfaces. A smoothed surface can push the hand along a closed path");
+                    "Hide the facets of curved surfaces; a smoothed surface can supply energy");
   command->add_flag("--headless", options->is_headless,
                     "Switch the force on without a window, and print one line per second");
   command->add_option("--seconds", options->seconds, "With --headless: stop after this board time. Default: at Ctrl-C")
