@@ -51,7 +51,8 @@ def fields(struct: str, body: list[str]) -> list[str]:
             raise NotUnderstood(f"{struct}: {line}")
         bits, member = int(field["bits"] or 0), f"{struct}::{field['name']}"
         if bits:
-            offset = f"offsetof({struct}, {before}) + sizeof({struct}::{before}) + {bits_before // 8}"
+            begin = f"offsetof({struct}, {before}) + sizeof({struct}::{before}) + " if before else ""
+            offset = f"{begin}{bits_before // 8}"
             size, first_bit = "1", bits_before % 8
             bits_before += bits
         else:
