@@ -58,8 +58,8 @@ void Servo::follow_parameters(const device::DrivenPose& driven) {
   if (!driven.is_first && driven.parameters_revision == known_revision_) return;
   known_revision_ = driven.parameters_revision;
   arm_ = control::prepare(driven.parameters).arm;
-  const double radius_m =
-      std::max(static_cast<double>(driven.parameters[protocol::Parameter::sphere_radius_m]), contact::tip_radius_min_m);
+  // The contact step raises a radius below contact::tip_radius_min_m.
+  const auto radius_m = static_cast<double>(driven.parameters[protocol::Parameter::sphere_radius_m]);
   // A larger tip would overlap the touched object.
   if (radius_m != tool_.radius_m) tool_.is_placed = false;
   tool_.radius_m = radius_m;
