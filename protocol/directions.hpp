@@ -43,8 +43,8 @@ inline std::array<std::array<float, 3>, 2> across(const std::array<float, 3>& ax
   const float sign = axis[2] < 0.0f ? -1.0f : 1.0f;
   const float a = -1.0f / (sign + axis[2]);
   const float b = axis[0] * axis[1] * a;
-  return {{{1.0f + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0]},
-           {b, sign + axis[1] * axis[1] * a, -axis[1]}}};
+  return {
+      {{1.0f + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0]}, {b, sign + axis[1] * axis[1] * a, -axis[1]}}};
 }
 
 }  // namespace inkwell::protocol

@@ -333,11 +333,11 @@ struct FrameReport {
 
 /// Surface properties of a shape.
 struct SurfaceEntry {
-  float stiffness_N_per_m;  ///< above 0, to the maximum of wall_stiffness_N_per_m
-  float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
-  float static_friction;    ///< 0..friction_maximum, relative to the normal force
-  float dynamic_friction;   ///< 0..static_friction
-  float viscosity_Ns_per_m; ///< 0 to the maximum of wall_damping_Ns_per_m; tangential, at most the normal force
+  float stiffness_N_per_m;   ///< above 0, to the maximum of wall_stiffness_N_per_m
+  float damping_Ns_per_m;    ///< 0 to the maximum of wall_damping_Ns_per_m
+  float static_friction;     ///< 0..friction_maximum, relative to the normal force
+  float dynamic_friction;    ///< 0..static_friction
+  float viscosity_Ns_per_m;  ///< 0 to the maximum of wall_damping_Ns_per_m; tangential, at most the normal force
   /// Life of the shape after it takes effect, 0..shape_life_maximum_s. A shape with infinite life exists until the
   /// claim ends. A shape with `life_s` 0 does not exist.
   float life_s;
@@ -398,7 +398,7 @@ struct ShapesReport {
   std::uint8_t version = protocol_version;
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
   std::uint8_t solid_count;  ///< 0..shape_solids_maximum
-  std::uint32_t claim;  ///< claim of the driver
+  std::uint32_t claim;       ///< claim of the driver
   /// Chosen by the program. RequestResultsReport lists the result under the ticket. If the ticket is 0, the result is
   /// not recorded.
   std::uint32_t ticket;
@@ -425,8 +425,8 @@ struct FeatureEntry {
   std::uint8_t reserved : 1;
   /// Octahedral coordinates of a unit vector (decode_direction()). Plane, sphere: normal at the anchor. Cylinder: axis.
   std::int16_t direction[2];
-  /// In local_length_step_m. Plane, sphere: distance from the surface to the anchor, and radius of the sphere. Cylinder:
-  /// vector from the anchor to the axis along the two vectors of across().
+  /// In local_length_step_m. Plane, sphere: distance from the surface to the anchor, and radius of the sphere.
+  /// Cylinder: vector from the anchor to the axis along the two vectors of across().
   std::int16_t lengths[2];
 };
 
@@ -437,16 +437,16 @@ struct FeatureEntry {
 struct LocalModelReport {
   ReportId report_id = ReportId::local_model;
   ForceMode mode;
-  std::uint8_t feature_count;   ///< 0..local_features_maximum
-  std::uint8_t interval_ms;     ///< 1..force_interval_maximum_ms, for the force
-  std::uint8_t life_ms;         ///< 1..local_model_life_maximum_ms; the model fades if no report arrives in this time
-  std::int8_t spin[3];          ///< angular velocity of the moving object, in local_spin_step_rad_per_s
-  std::uint32_t claim;          ///< claim of the driver
-  std::uint16_t sequence;       ///< low half of the sequence of force reports
-  std::uint16_t pose_sequence;  ///< low half of PoseReport::sequence of the newest pose that the program has received
-  std::int16_t anchor[3];       ///< in local_anchor_step_m, in the workspace
-  std::int16_t velocity[3];     ///< of the moving object at the anchor, in local_speed_step_m_per_s
-  std::int16_t force[3];        ///< force on the hand, in local_force_step_N
+  std::uint8_t feature_count;     ///< 0..local_features_maximum
+  std::uint8_t interval_ms;       ///< 1..force_interval_maximum_ms, for the force
+  std::uint8_t life_ms;           ///< 1..local_model_life_maximum_ms; the model fades if no report arrives in this time
+  std::int8_t spin[3];            ///< angular velocity of the moving object, in local_spin_step_rad_per_s
+  std::uint32_t claim;            ///< claim of the driver
+  std::uint16_t sequence;         ///< low half of the sequence of force reports
+  std::uint16_t pose_sequence;    ///< low half of PoseReport::sequence of the newest pose that the program has received
+  std::int16_t anchor[3];         ///< in local_anchor_step_m, in the workspace
+  std::int16_t velocity[3];       ///< of the moving object at the anchor, in local_speed_step_m_per_s
+  std::int16_t force[3];          ///< force on the hand, in local_force_step_N
   std::uint16_t cylinder_radius;  ///< of all cylinders of the report, in local_length_step_m
   FeatureEntry features[local_features_maximum];
   std::uint8_t reserved;

@@ -178,8 +178,8 @@ void Controller::render_force(const Settings& settings) {
   Vector3 rendered_N;
   probe_.wall = {settings.wall.stiffness_N_per_m, settings.wall.damping_Ns_per_m};
   if (touch_.has_objects()) {
-    const TouchForce& touch = touch_.step(probe_.position_m, probe_.velocity_m_per_s,
-                                          law_is_felt ? &settings.box : nullptr, settings.wall);
+    const TouchForce& touch =
+        touch_.step(probe_.position_m, probe_.velocity_m_per_s, law_is_felt ? &settings.box : nullptr, settings.wall);
     reserve_.spend(touch.raised_J);
     rendered_N = touch.objects_N;
     probe_.walls_N = touch.walls_N;

@@ -79,8 +79,8 @@ bool decode_plane(const protocol::PlaneEntry& entry, control::Plane& plane) {
   return true;
 }
 
-/// Sets the distance from the center beyond which a proxy does not touch the solid. The proxy moves less than the margin
-/// in a period.
+/// Sets the distance from the center beyond which a proxy does not touch the solid. The proxy moves less than the
+/// margin in a period.
 void set_reach(control::Solid& solid, float core_m) {
   constexpr float margin_m = 0.001f;
   const float reach_m = core_m + solid.radius_m + margin_m;
@@ -103,12 +103,11 @@ bool decode_orientation(const float (&q)[4], std::array<Vector3, 3>& axes) {
   const float squared = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (squared < shortest_squared) return false;
   const float s = 2.0f / squared;
-  axes = {Vector3{1.0f - s * (q[2] * q[2] + q[3] * q[3]), s * (q[1] * q[2] + q[0] * q[3]),
-                  s * (q[1] * q[3] - q[0] * q[2])},
-          Vector3{s * (q[1] * q[2] - q[0] * q[3]), 1.0f - s * (q[1] * q[1] + q[3] * q[3]),
-                  s * (q[2] * q[3] + q[0] * q[1])},
-          Vector3{s * (q[1] * q[3] + q[0] * q[2]), s * (q[2] * q[3] - q[0] * q[1]),
-                  1.0f - s * (q[1] * q[1] + q[2] * q[2])}};
+  axes = {
+      Vector3{1.0f - s * (q[2] * q[2] + q[3] * q[3]), s * (q[1] * q[2] + q[0] * q[3]), s * (q[1] * q[3] - q[0] * q[2])},
+      Vector3{s * (q[1] * q[2] - q[0] * q[3]), 1.0f - s * (q[1] * q[1] + q[3] * q[3]), s * (q[2] * q[3] + q[0] * q[1])},
+      Vector3{s * (q[1] * q[3] + q[0] * q[2]), s * (q[2] * q[3] - q[0] * q[1]),
+              1.0f - s * (q[1] * q[1] + q[2] * q[2])}};
   return true;
 }
 
@@ -156,7 +155,8 @@ bool decode_solid(const protocol::SolidEntry& entry, control::Solid& solid) {
 }
 
 Vector3 vector_of(const std::int16_t (&steps)[3], float step) {
-  return {step * static_cast<float>(steps[0]), step * static_cast<float>(steps[1]), step * static_cast<float>(steps[2])};
+  return {step * static_cast<float>(steps[0]), step * static_cast<float>(steps[1]),
+          step * static_cast<float>(steps[2])};
 }
 
 Vector3 vector_of(const std::array<float, 3>& values) { return {values[0], values[1], values[2]}; }
@@ -195,9 +195,9 @@ bool decode_feature(const protocol::FeatureEntry& entry, const protocol::LocalMo
   }
   if (solid.core != Core::half_space && solid.radius_m < smallest_feature_radius_m) return false;
   if (entry.moves == 0) return true;
-  const Vector3 spin_rad_per_s = protocol::local_spin_step_rad_per_s *
-                                 Vector3{static_cast<float>(report.spin[0]), static_cast<float>(report.spin[1]),
-                                         static_cast<float>(report.spin[2])};
+  const Vector3 spin_rad_per_s = protocol::local_spin_step_rad_per_s * Vector3{static_cast<float>(report.spin[0]),
+                                                                               static_cast<float>(report.spin[1]),
+                                                                               static_cast<float>(report.spin[2])};
   feature.velocity_m_per_s = vector_of(report.velocity, protocol::local_speed_step_m_per_s) +
                              control::cross(spin_rad_per_s, solid.centre_m - anchor_m);
   feature.axis_rate_per_s = control::cross(spin_rad_per_s, solid.axes[0]);

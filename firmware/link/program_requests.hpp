@@ -57,7 +57,8 @@ class ProgramRequests {
   /// Returns `malformed` for an invalid report.
   protocol::RequestResult accept_shapes(std::span<const std::byte> report);
 
-  /// Removes all shapes and the local model, and lets the program force fade. Call this function after the claim has ended.
+  /// Removes all shapes and the local model, and lets the program force fade. Call this function after the claim has
+  /// ended.
   void driver_gone();
 
   std::uint32_t forces_received() const { return forces_received_; }

@@ -60,7 +60,8 @@ class ControlRequests {
 class ControlEndpoint {
  public:
   /// Size of the longest report without padding.
-  static constexpr std::size_t buffer_size = std::max(sizeof(protocol::ParametersReport), sizeof(protocol::ShapesReport));
+  static constexpr std::size_t buffer_size =
+      std::max(sizeof(protocol::ParametersReport), sizeof(protocol::ShapesReport));
   /// A host may pad a written report to the length of the longest feature report. Bytes beyond the buffer are
   /// discarded.
   static constexpr std::size_t receive_maximum = protocol::longest_report(protocol::ReportKind::feature);

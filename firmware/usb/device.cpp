@@ -274,7 +274,9 @@ void Device::send_scope() {
 }
 
 void Device::take_report(std::span<const std::byte> report) {
-  const auto is = [report](protocol::ReportId id) { return !report.empty() && report[0] == static_cast<std::byte>(id); };
+  const auto is = [report](protocol::ReportId id) {
+    return !report.empty() && report[0] == static_cast<std::byte>(id);
+  };
   if (is(protocol::ReportId::force) || is(protocol::ReportId::local_model)) {
     is(protocol::ReportId::force) ? take_force(report) : take_local_model(report);
     port_.receive(identity::hid_out_endpoint);

@@ -94,8 +94,8 @@ TEST_CASE("an object appears, moves and disappears in the scene") {
     return now.x > before.x + 30;  // x points to the right
   });
   CHECK(now.y == doctest::Approx(before.y).epsilon(0.2));
-  window.place("object 0 0 0 0.785\n");
-  window.wait_for_pixels(pixels + pixels / 10, 100'000);  // the diagonal of the cube is wider
+  window.place("object 0 0 0 0.56\n");
+  window.wait_for_pixels(1000, pixels * 9 / 10);  // the eye sees one side of the cube from the front
   window.place("");
   window.wait_for_pixels(0, 0);
 }
@@ -106,20 +106,21 @@ TEST_CASE("an object outside the box is visible through the transparent walls") 
   window.wait_for_pixels(1000, 100'000);
 }
 
-TEST_CASE("an object covers the sphere inside it, and the sphere covers an object behind it") {
+TEST_CASE("an object covers the sphere inside it") {
   ObjectWindow window;
-  const auto sphere_pixels = [&window] {
-    return window.rig().picture().count({colours::probe.red, colours::probe.green, colours::probe.blue}, exactly);
+  const Item view = window.rig().look().item("scene/view");
+  const auto sphere_pixels = [&window, &view] {  // lines of the scope below the scene have the same color
+    Image image = window.rig().picture();
+    image.rgb.resize(3 * image.width * static_cast<std::size_t>(view.y + view.height));
+    image.height = static_cast<std::size_t>(view.y + view.height);
+    return image.count({colours::probe.red, colours::probe.green, colours::probe.blue}, exactly);
   };
   const std::size_t uncovered = sphere_pixels();
   CHECK(uncovered > 50);
   const auto [x_m, y_m, z_m] = window.rig().true_probe_m();
   window.place(fmt::format("object {} {} {} 0\n", x_m, y_m, z_m));
   window.wait_for_pixels(500, 100'000);
-  CHECK(sphere_pixels() < uncovered / 2);  // labels and plots can have the same color
-  window.place(fmt::format("object {} {} {} 0\n", x_m, y_m, z_m - 0.1));
-  window.rig().wait_until("the sphere is visible", [&](const Sight&) { return sphere_pixels() >= uncovered; });
-  window.wait_for_pixels(200, 100'000);
+  CHECK(sphere_pixels() < uncovered / 10);
 }
 
 TEST_CASE("an unmoved object needs no frames, and a moved object redraws the scene") {

@@ -1,5 +1,6 @@
-// Local models approximate a large object near the tip. The PC computes them from a mesh at 1 kHz, and the board renders
-// them at the servo rate (Adachi, Kumano, Ogino, "Intermediate representation for stiff virtual objects", VRAIS 1995).
+// Local models approximate a large object near the tip. The PC computes them from a mesh at 1 kHz, and the board
+// renders them at the servo rate (Adachi, Kumano, Ogino, "Intermediate representation for stiff virtual objects", VRAIS
+// 1995).
 #pragma once
 
 #include <array>
@@ -16,8 +17,8 @@ namespace inkwell::control {
 struct Feature {
   Solid solid;
   Surface surface;
-  Vector3 velocity_m_per_s;   ///< of `solid.centre_m`; 0 for a stationary object
-  Vector3 axis_rate_per_s;    ///< change of `solid.axes[0]` by the rotation of the object
+  Vector3 velocity_m_per_s;  ///< of `solid.centre_m`; 0 for a stationary object
+  Vector3 axis_rate_per_s;   ///< change of `solid.axes[0]` by the rotation of the object
   /// The surface is this far below its final position. The surface moves outward slowly.
   float recess_m = 0.0f;
 };

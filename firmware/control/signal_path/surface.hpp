@@ -9,9 +9,9 @@ struct Surface {
   float stiffness_N_per_m;
   float m_per_N;  ///< 1 / stiffness
   float damping_Ns_per_m;
-  float static_friction;    ///< bound of the tangential force while sticking, as a part of the normal force
-  float dynamic_friction;   ///< the same bound while sliding; not above static_friction
-  float viscosity_Ns_per_m; ///< tangential force per tangential speed; the force does not exceed the normal force
+  float static_friction;     ///< bound of the tangential force while sticking, as a part of the normal force
+  float dynamic_friction;    ///< the same bound while sliding; not above static_friction
+  float viscosity_Ns_per_m;  ///< tangential force per tangential speed; the force does not exceed the normal force
 };
 
 }  // namespace inkwell::control

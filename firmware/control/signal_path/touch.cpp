@@ -55,8 +55,7 @@ Support two(const Barrier& a, const Barrier& b) {
 
 Vector3 out_m(const Support& support) {
   Vector3 sum_m;
-  for (std::size_t i = 0; i < support.count; ++i)
-    sum_m = sum_m + support.depth_m[i] * support.barriers[i]->normal;
+  for (std::size_t i = 0; i < support.count; ++i) sum_m = sum_m + support.depth_m[i] * support.barriers[i]->normal;
   return sum_m;
 }
 
@@ -130,8 +129,7 @@ Vector3 viscous_force_N(const Surface& surface, const Vector3& velocity_m_per_s,
 
 /// Adds a barrier. At most three barriers remain.
 Support with(const Support& support, const Barrier& next) {
-  return support.count == 1 ? two(*support.barriers[0], next)
-                            : three(*support.barriers[0], *support.barriers[1], next);
+  return support.count == 1 ? two(*support.barriers[0], next) : three(*support.barriers[0], *support.barriers[1], next);
 }
 
 }  // namespace
@@ -215,8 +213,7 @@ void Touch::collect(const Vector3& probe_m, const Box* walls, const Surface& wal
 #pragma GCC unroll 1
     for (std::size_t i = 0; below != 0; ++i, below >>= 1)
       if ((below & 1u) != 0)
-        barriers_.add(
-            {shapes.planes()[i].normal, -height_m(i), &shapes.surface_of_plane(i), &zero, 0.0f, false});
+        barriers_.add({shapes.planes()[i].normal, -height_m(i), &shapes.surface_of_plane(i), &zero, 0.0f, false});
   }
   std::uint32_t solids = shapes.solids();
 #pragma GCC unroll 1

@@ -24,11 +24,11 @@ namespace inkwell::control {
 
 /// Excludes the half-space below a tangent plane.
 struct Barrier {
-  Vector3 normal;           ///< unit vector, points into the free space
-  float depth_m;            ///< depth of the probe; negative if the barrier does not exclude the probe
+  Vector3 normal;  ///< unit vector, points into the free space
+  float depth_m;   ///< depth of the probe; negative if the barrier does not exclude the probe
   const Surface* surface;
   const Vector3* velocity_m_per_s;  ///< of the surface
-  float rise_m;             ///< outward movement of a recessed surface in this period
+  float rise_m;                     ///< outward movement of a recessed surface in this period
   bool is_wall;
 };
 
@@ -81,7 +81,8 @@ class Touch {
 
   /// Runs one period. `walls` is null if the hand does not feel the walls of the box. Without objects, wall_force_N()
   /// returns the same force of the walls in fewer cycles.
-  const TouchForce& step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls, const Surface& wall);
+  const TouchForce& step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls,
+                         const Surface& wall);
   /// Ends all contacts. Call this function in each period without force and without objects.
   void release(const Vector3& probe_m) {
     proxy_m_ = probe_m;

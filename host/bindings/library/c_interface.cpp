@@ -30,8 +30,11 @@ void put(const control::Vector3& vector, double* to, std::size_t stride) {
 }
 
 device::Surface surface_of(const inkwell_surface& surface) {
-  return {static_cast<float>(surface.stiffness_N_per_m), static_cast<float>(surface.damping_Ns_per_m),
-          static_cast<float>(surface.static_friction), static_cast<float>(surface.dynamic_friction), 0.0f,
+  return {static_cast<float>(surface.stiffness_N_per_m),
+          static_cast<float>(surface.damping_Ns_per_m),
+          static_cast<float>(surface.static_friction),
+          static_cast<float>(surface.dynamic_friction),
+          0.0f,
           static_cast<float>(surface.life_s)};
 }
 

@@ -401,7 +401,8 @@ struct Device::Implementation {
     {
       const std::lock_guard lock(feature_mutex);
       transport()->set_feature(
-          std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count, shapes.solid_count, shapes.material_count)));
+          std::as_bytes(std::span(&shapes, 1))
+              .first(protocol::shapes_report_size(shapes.plane_count, shapes.solid_count, shapes.material_count)));
     }
     // If the result is missing, the caller sends the shapes again.
     return result_in(request_results(), shapes.ticket).value_or(protocol::RequestResult::busy);

@@ -54,8 +54,8 @@ protocol::SurfaceEntry surface_entry(const std::string& shape, const Surface& su
 
 struct KindOfSolid {
   const char* name;
-  std::size_t sizes;   ///< number of used sizes
-  float smallest_m;    ///< smallest size
+  std::size_t sizes;  ///< number of used sizes
+  float smallest_m;   ///< smallest size
 };
 
 KindOfSolid kind_of(protocol::SolidKind kind) {
@@ -84,7 +84,8 @@ protocol::SolidEntry solid_entry(const Solid& solid, std::size_t number) {
     squared += solid.orientation[i] * solid.orientation[i];
   }
   if (!(squared > 0.01f && squared < 100.0f))
-    throw Error(fmt::format("The orientation of {} is not a rotation. Give a quaternion w, x, y, z of length 1.", name));
+    throw Error(
+        fmt::format("The orientation of {} is not a rotation. Give a quaternion w, x, y, z of length 1.", name));
   entry.surface = surface_entry(name, solid.surface);
   return entry;
 }

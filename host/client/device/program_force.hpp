@@ -24,8 +24,8 @@ struct ForceRequest {
 struct Surface {
   float stiffness_N_per_m = 800.0f;
   float damping_Ns_per_m = 2.0f;
-  float static_friction = 0.0f;   ///< largest ratio of tangential force to normal force while the probe sticks
-  float dynamic_friction = 0.0f;  ///< ratio of tangential force to normal force while the probe slides
+  float static_friction = 0.0f;     ///< largest ratio of tangential force to normal force while the probe sticks
+  float dynamic_friction = 0.0f;    ///< ratio of tangential force to normal force while the probe slides
   float viscosity_Ns_per_m = 0.0f;  ///< tangential force per tangential speed, at most the normal force
   /// The board removes the shape after this time unless the program places the shape again. By default, the shape
   /// exists while the program drives the arm.

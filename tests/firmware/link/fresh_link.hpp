@@ -18,7 +18,8 @@ inline link::Link& fresh_link(std::uint32_t first_period = 0) {
   alignas(link::Link) static std::byte storage[sizeof(link::Link)];
   alignas(link::ProgramRequests) static std::byte requests[sizeof(link::ProgramRequests)];
   black_box = {};
-  auto* const fresh = new (storage) link::Link(cycles_per_period, *new (requests) link::ProgramRequests, frames, black_box, first_period);
+  auto* const fresh = new (storage)
+      link::Link(cycles_per_period, *new (requests) link::ProgramRequests, frames, black_box, first_period);
   fresh->black_box.start(protocol::Fault::none, {});
   return *fresh;
 }

@@ -31,8 +31,8 @@ std::span<const std::byte> bytes(const Report& report) {
 }
 
 std::span<const std::byte> bytes(const ShapesReport& report) {
-  return std::as_bytes(std::span(&report, 1)).first(
-      protocol::shapes_report_size(report.plane_count, report.solid_count, report.material_count));
+  return std::as_bytes(std::span(&report, 1))
+      .first(protocol::shapes_report_size(report.plane_count, report.solid_count, report.material_count));
 }
 
 constexpr protocol::SurfaceEntry valid_surface{800.0f, 1.0f, 0.5f, 0.4f, 3.0f, 2.0f};

@@ -62,22 +62,14 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
   const struct {
     unsigned id, usage, item;
     std::size_t size;
-  } reports[] = {{0x01, 2, 0x81, sizeof(PoseReport)},
-                 {0x02, 3, 0x91, sizeof(CommandReport)},
-                 {0x03, 8, 0x91, sizeof(ForceReport)},
-                 {0x04, 18, 0x91, sizeof(LocalModelReport)},
-                 {0x10, 4, 0xB1, sizeof(InformationReport)},
-                 {0x11, 5, 0xB1, sizeof(ParametersReport)},
-                 {0x12, 6, 0xB1, sizeof(TransactionReport)},
-                 {0x13, 7, 0xB1, sizeof(FrameReport)},
-                 {0x14, 9, 0xB1, sizeof(ShapesReport)},
-                 {0x15, 10, 0xB1, 2048},
-                 {0x16, 11, 0xB1, sizeof(BlackBoxReport)},
-                 {0x17, 12, 0xB1, sizeof(BlackBoxRowsReport)},
-                 {0x18, 13, 0xB1, sizeof(SelfTestReport)},
-                 {0x19, 14, 0xB1, sizeof(StoreReport)},
-                 {0x1A, 15, 0xB1, sizeof(ParametersReport)},
-                 {0x1B, 16, 0xB1, sizeof(DriverReport)},
+  } reports[] = {{0x01, 2, 0x81, sizeof(PoseReport)},           {0x02, 3, 0x91, sizeof(CommandReport)},
+                 {0x03, 8, 0x91, sizeof(ForceReport)},          {0x04, 18, 0x91, sizeof(LocalModelReport)},
+                 {0x10, 4, 0xB1, sizeof(InformationReport)},    {0x11, 5, 0xB1, sizeof(ParametersReport)},
+                 {0x12, 6, 0xB1, sizeof(TransactionReport)},    {0x13, 7, 0xB1, sizeof(FrameReport)},
+                 {0x14, 9, 0xB1, sizeof(ShapesReport)},         {0x15, 10, 0xB1, 2048},
+                 {0x16, 11, 0xB1, sizeof(BlackBoxReport)},      {0x17, 12, 0xB1, sizeof(BlackBoxRowsReport)},
+                 {0x18, 13, 0xB1, sizeof(SelfTestReport)},      {0x19, 14, 0xB1, sizeof(StoreReport)},
+                 {0x1A, 15, 0xB1, sizeof(ParametersReport)},    {0x1B, 16, 0xB1, sizeof(DriverReport)},
                  {0x1C, 17, 0xB1, sizeof(RequestResultsReport)}};
   Bytes expected = bytes({0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08});
   for (const auto& row : reports) {

@@ -26,7 +26,7 @@ inline constexpr Colour wall_touched{213, 94, 0};  ///< frame and glow of a wall
 inline constexpr Colour wall_idle{110, 132, 160};  ///< frame and grid of a wall without contact
 inline constexpr Colour force{213, 94, 0};         ///< force arrow, in the color of a wall in contact
 inline constexpr Colour hand{0, 158, 115};         ///< the simulated hand and its spring: bluish green
-inline constexpr Colour object{196, 178, 146};     ///< an object that the hand feels: bone, which no other part has
+inline constexpr Colour object{196, 178, 146};     ///< an object that the hand feels: neutral bone
 inline constexpr Colour axis_x{204, 121, 167};     ///< reddish purple
 inline constexpr Colour axis_y{0, 158, 115};
 inline constexpr Colour axis_z{86, 180, 233};

@@ -43,8 +43,7 @@ TEST_CASE("every point is in the free space of an unused plane") {
   LivingShapes living;
   const Shapes nothing;
   living.replace(nothing);
-  for (const control::Plane& plane : living.planes())
-    CHECK(dot(plane.normal, {-9.0f, 9.0f, -9.0f}) > plane.offset_m);
+  for (const control::Plane& plane : living.planes()) CHECK(dot(plane.normal, {-9.0f, 9.0f, -9.0f}) > plane.offset_m);
 }
 
 }  // namespace

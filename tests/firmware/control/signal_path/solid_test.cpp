@@ -70,7 +70,8 @@ TEST_CASE("heights above the sides, the edges and the ends of the solids") {
 TEST_CASE("in its core a solid has no normal") {
   Foot foot;
   CHECK(!find_foot(solids[0], solids[0].centre_m, foot));
-  for (const Solid& solid : {solids[1], solids[2], solids[3]}) CHECK(!find_foot(solid, {0.001f, 0.001f, 0}, foot) == (solid.core != Core::segment));
+  for (const Solid& solid : {solids[1], solids[2], solids[3]})
+    CHECK(!find_foot(solid, {0.001f, 0.001f, 0}, foot) == (solid.core != Core::segment));
 }
 
 }  // namespace

@@ -162,9 +162,10 @@ TEST_CASE("the proxy is the nearest point of the intersection of up to three hal
     // The proxy is in the free space, and no free point near the proxy is nearer to the probe.
     for (const Vector3& normal : normals) CHECK(dot(normal, proxy_m) > -5e-6f);
     for (int k = 0; k < 40; ++k) {
-      const Vector3 other_m =
-          proxy_m + Vector3{random.between(-1e-3f, 1e-3f), random.between(-1e-3f, 1e-3f), random.between(-1e-3f, 1e-3f)};
-      const bool is_free = std::ranges::all_of(normals, [&](const Vector3& normal) { return dot(normal, other_m) >= 0; });
+      const Vector3 other_m = proxy_m + Vector3{random.between(-1e-3f, 1e-3f), random.between(-1e-3f, 1e-3f),
+                                                random.between(-1e-3f, 1e-3f)};
+      const bool is_free =
+          std::ranges::all_of(normals, [&](const Vector3& normal) { return dot(normal, other_m) >= 0; });
       if (is_free) CHECK(length(other_m - probe_m) > length(proxy_m - probe_m) - 5e-6f);
     }
   }
@@ -190,7 +191,10 @@ TEST_CASE("a probe that is pushed through the middle of a solid is still pushed 
   const Solid solids[] = {
       {.core = Core::point, .radius_m = 0.004f},
       {.core = Core::segment, .axes = {Vector3{1, 0, 0}}, .half_m = {0.02f}, .radius_m = 0.004f},
-      {.core = Core::box, .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up}, .half_m = {0.02f, 0.02f, 1e-4f}, .radius_m = 5e-4f},
+      {.core = Core::box,
+       .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up},
+       .half_m = {0.02f, 0.02f, 1e-4f},
+       .radius_m = 5e-4f},
       {.core = Core::cylinder, .axes = {up}, .half_m = {1e-4f}, .core_radius_m = 0.02f, .radius_m = 5e-4f}};
   for (const Solid& solid : solids) {
     CAPTURE(static_cast<int>(solid.core));
@@ -306,7 +310,8 @@ TEST_CASE("surfaces of any stiffness rise by at most 5 mN in a period, also in g
       Touch touch;
       const Vector3 probe_m{0.0f, 0.0f, -0.001f};
       touch.step(probe_m, {}, nullptr, smooth);
-      LocalModel model = model_of({plane_feature({lean, 0, height}, 0, surface), plane_feature({-lean, 0, height}, 0, surface)});
+      LocalModel model =
+          model_of({plane_feature({lean, 0, height}, 0, surface), plane_feature({-lean, 0, height}, 0, surface)});
       touch.follow(model);
       float force_N = 0.0f;
       for (int period = 0; period < 4000; ++period) {
@@ -380,9 +385,10 @@ TEST_CASE("a moving surface carries the hand and its friction along at the servo
 
 TEST_CASE("a turning cylinder turns its axis, and a local model expires after its life") {
   Touch touch;
-  LocalModel model = model_of({{.solid = {.core = Core::segment, .axes = {Vector3{1, 0, 0}}, .half_m = {1.0f}, .radius_m = 0.002f},
-                                .surface = smooth,
-                                .axis_rate_per_s = {0.0f, 10.0f, 0.0f}}});
+  LocalModel model =
+      model_of({{.solid = {.core = Core::segment, .axes = {Vector3{1, 0, 0}}, .half_m = {1.0f}, .radius_m = 0.002f},
+                 .surface = smooth,
+                 .axis_rate_per_s = {0.0f, 10.0f, 0.0f}}});
   model.life_periods = 20;
   touch.follow(model);
   CHECK(touch.has_objects());

@@ -152,25 +152,25 @@ TEST_CASE("a local model arrives at the board within the resolution of the repor
   device::LocalModel model;
   const std::array<float, 3> direction{0.48f, -0.6f, 0.64f};
   model.anchor_m = {0.0312f, -0.0471f, 0.0523f};
-  model.features = {
-      device::Feature{.direction = direction, .point_m = {0.032f, -0.046f, 0.05f}, .material = 3},
-      device::Feature{.kind = protocol::FeatureKind::cylinder,
-                      .direction = direction,
-                      .point_m = {0.035f, -0.046f, 0.051f},
-                      .radius_m = 0.001f,
-                      .material = 3,
-                      .moves = true},
-      device::Feature{.kind = protocol::FeatureKind::sphere,
-                      .point_m = {0.03f, -0.04f, 0.045f},
-                      .radius_m = 0.008f,
-                      .material = 3,
-                      .moves = true}};
+  model.features = {device::Feature{.direction = direction, .point_m = {0.032f, -0.046f, 0.05f}, .material = 3},
+                    device::Feature{.kind = protocol::FeatureKind::cylinder,
+                                    .direction = direction,
+                                    .point_m = {0.035f, -0.046f, 0.051f},
+                                    .radius_m = 0.001f,
+                                    .material = 3,
+                                    .moves = true},
+                    device::Feature{.kind = protocol::FeatureKind::sphere,
+                                    .point_m = {0.03f, -0.04f, 0.045f},
+                                    .radius_m = 0.008f,
+                                    .material = 3,
+                                    .moves = true}};
   model.count = 3;
   model.velocity_m_per_s = {0.1f, -0.2f, 0.3f};
   model.spin_rad_per_s = {0, 0, 2.0f};
   model.life_ms = 5;
   control::LocalModel decoded;
-  const auto target = decode(device::local_model_report(model, {.force_N = {0.5f, -1.25f, 3}, .interval_ms = 2}), decoded);
+  const auto target =
+      decode(device::local_model_report(model, {.force_N = {0.5f, -1.25f, 3}, .interval_ms = 2}), decoded);
   REQUIRE(target);
   CHECK(target->force_N.y == doctest::Approx(-1.25f));
   CHECK(target->interval_periods == 40);
@@ -194,7 +194,8 @@ TEST_CASE("a local model arrives at the board within the resolution of the repor
 TEST_CASE("a second cylinder radius, and a radius beyond the report, become tangent planes") {
   device::LocalModel model;
   model.count = 3;
-  model.features.fill({.kind = protocol::FeatureKind::cylinder, .direction = {1, 0, 0}, .point_m = {0, 0, -0.01f}, .radius_m = 0.01f});
+  model.features.fill(
+      {.kind = protocol::FeatureKind::cylinder, .direction = {1, 0, 0}, .point_m = {0, 0, -0.01f}, .radius_m = 0.01f});
   model.features[1].radius_m = 0.005f;
   model.features[2] = {.kind = protocol::FeatureKind::sphere, .point_m = {0, 0, -0.2f}, .radius_m = 0.19f};
   for (auto& feature : model.features) feature.material = 3;
@@ -230,12 +231,9 @@ TEST_CASE("a local model with invalid values is refused, here and by the board")
   const auto valid = device::local_model_report(model, {});
   for (const auto& change : std::vector<std::function<void(protocol::LocalModelReport&)>>{
            [](auto& each) { each.mode = static_cast<protocol::ForceMode>(3); },
-           [](auto& each) { each.interval_ms = 0; },
-           [](auto& each) { each.interval_ms = 51; },
-           [](auto& each) { each.life_ms = 0; },
-           [](auto& each) { each.life_ms = 21; },
-           [](auto& each) { each.feature_count = 4; },
-           [](auto& each) { each.features[0].material = 2; },
+           [](auto& each) { each.interval_ms = 0; }, [](auto& each) { each.interval_ms = 51; },
+           [](auto& each) { each.life_ms = 0; }, [](auto& each) { each.life_ms = 21; },
+           [](auto& each) { each.feature_count = 4; }, [](auto& each) { each.features[0].material = 2; },
            [](auto& each) { each.features[0].kind = static_cast<protocol::FeatureKind>(3); },
            [](auto& each) { each.features[0].kind = protocol::FeatureKind::sphere; },  // radius 0
        }) {
