@@ -2,13 +2,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 
 #include <benchmark/benchmark.h>
 
 #include "firmware/control/signal_path/contact.hpp"
-#include "firmware/control/signal_path/shapes.hpp"
+#include "firmware/control/signal_path/touch.hpp"
 
 namespace {
 
@@ -53,27 +52,34 @@ control::Shapes nine_shapes() {
                                  .m_per_N = 1.0f / 800.0f,
                                  .damping_Ns_per_m = 1.0f,
                                  .static_friction = 0.4f,
-                                 .dynamic_friction = 0.3f};
+                                 .dynamic_friction = 0.3f,
+                                 .viscosity_Ns_per_m = 0.0f};
   const float diagonal = 1.0f / std::numbers::sqrt3_v<float>;
   control::Shapes shapes;
-  shapes.sphere = {{}, 0.02f, 0.0004f};
+  shapes.solids[0] = {.core = control::Solid::Core::point, .radius_m = 0.02f, .reach_squared_m2 = 0.0005f};
   for (unsigned i = 0; i < shapes.planes.size(); ++i) {
     const auto sign = [&](unsigned axis) { return (i >> axis & 1) != 0 ? diagonal : -diagonal; };
     shapes.planes[i] = {{sign(0), sign(1), sign(2)}, -0.06f};
   }
   shapes.surfaces.fill(surface);
-  shapes.life_periods.fill(std::numeric_limits<std::uint32_t>::max());
+  for (std::size_t i = 0; i <= shapes.planes.size(); ++i) shapes.life_periods[i] = control::Shapes::lasting;
   return shapes;
 }
 
 void walls_and_shapes(benchmark::State& state) {
   Path path;
   const auto shapes = nine_shapes();
-  control::TouchedShapes touched;
-  touched.replace(shapes);
+  control::Touch touch;
+  touch.shapes.replace(shapes);
+  const control::Surface surface{.stiffness_N_per_m = wall.stiffness_N_per_m,
+                                 .m_per_N = 1.0f / wall.stiffness_N_per_m,
+                                 .damping_Ns_per_m = wall.damping_Ns_per_m,
+                                 .static_friction = 0.0f,
+                                 .dynamic_friction = 0.0f,
+                                 .viscosity_Ns_per_m = 0.0f};
   for (auto _ : state) {
     const auto& moment = path.next();
-    benchmark::DoNotOptimize(walls_force_N(moment) + touched.force_N(moment.position_m, moment.velocity_m_per_s));
+    benchmark::DoNotOptimize(touch.step(moment.position_m, moment.velocity_m_per_s, &box, surface));
   }
 }
 

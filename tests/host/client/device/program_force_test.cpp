@@ -61,15 +61,18 @@ TEST_CASE("shapes keep their indices, those that are not there have no life, and
   const auto report = device::shapes_report(valid_shapes());
   CHECK(report.plane_count == 6);
   control::Shapes shapes;
+  link::Materials materials{};
   REQUIRE(link::decode_shapes(
-      std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count)), shapes));
+      std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count, report.solid_count)),
+      shapes, materials));
   for (std::size_t index = 0; index < protocol::shape_planes_maximum; ++index)
-    CHECK((shapes.life_periods[1 + index] != 0) == (index == 0 || index == 5));
+    CHECK((shapes.life_periods[index] != 0) == (index == 0 || index == 5));
   CHECK(shapes.planes[5].normal == control::Vector3{0, -1, 0});
   CHECK(shapes.planes[5].offset_m == doctest::Approx(-0.02f));
-  CHECK(shapes.life_periods[0] != 0);
-  CHECK(shapes.sphere.centre_m == control::Vector3{0, 0, -0.05f});
-  CHECK(shapes.sphere.radius_m == 0.02f);
+  CHECK(shapes.life_periods[control::Shapes::maximum - 1] != 0);
+  const control::Solid& sphere = shapes.solids[protocol::shape_solids_maximum];
+  CHECK(sphere.centre_m == control::Vector3{0, 0, -0.05f});
+  CHECK(sphere.radius_m == 0.02f);
   CHECK(shapes.surfaces[0].stiffness_N_per_m == 800.0f);
   CHECK(device::shapes_report({}).plane_count == 0);
 }

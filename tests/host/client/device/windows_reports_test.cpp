@@ -96,7 +96,7 @@ TEST_CASE("Windows: a program's shapes are placed") {
   arm->place_shapes(shapes);
   const auto* placed = windows.bench.link.program.take_shapes();
   REQUIRE(placed != nullptr);
-  CHECK(placed->sphere.radius_m == 0.01f);
+  CHECK(placed->solids[protocol::shape_solids_maximum].radius_m == 0.01f);
 }
 
 TEST_CASE("Windows: a program's forces and commands are accepted") {
