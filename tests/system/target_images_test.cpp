@@ -28,12 +28,13 @@ void check_images(const std::string& mode, std::initializer_list<const char*> na
 
 TEST_CASE("the target's tests pass on the virtual board in fast mode") {
   check_images("fast", {"target-tests-control", "target-tests-link", "target-tests-self-test", "target-tests-usb",
-                        "target-tests-requests", "target-tests-streams", "target-tests-poses"});
+                        "target-tests-requests", "target-tests-streams", "target-tests-poses", "target-tests-hosts",
+                        "target-tests-programs"});
 }
 
 // The control tests are excluded, because they would run for minutes of board time. The experiment tests the control
 // law in exact mode.
 TEST_CASE("the target's tests pass on the virtual board in exact mode") {
   check_images("exact", {"target-tests-link", "target-tests-self-test", "target-tests-usb", "target-tests-requests",
-                         "target-tests-streams", "target-tests-poses"});
+                         "target-tests-streams", "target-tests-poses", "target-tests-hosts", "target-tests-programs"});
 }
