@@ -32,36 +32,30 @@ const Barrier* deepest(const Barriers& barriers, const Vector3& out_m) {
   return found;
 }
 
-Support one(const Barrier& a) {
-  Support support;
+void set_one(Support& support, const Barrier& a) {
+  support.count = 0;
   support.add(a, a.depth_m);
-  return support;
+  support.out_m = a.depth_m * a.normal;
 }
 
-/// Returns the support of two barriers, or of one barrier if only that barrier pushes.
-Support two(const Barrier& a, const Barrier& b) {
+/// Sets the support of two barriers, or of one barrier if only that barrier pushes.
+void set_two(Support& support, const Barrier& a, const Barrier& b) {
   const float cosine = dot(a.normal, b.normal);
   const float sine_squared = 1.0f - cosine * cosine;
   const float a_m = a.depth_m - cosine * b.depth_m;
   const float b_m = b.depth_m - cosine * a.depth_m;
-  if (a_m <= 0.0f) return one(b);
-  if (b_m <= 0.0f || sine_squared < flat_sine_squared) return one(a);
+  if (a_m <= 0.0f) return set_one(support, b);
+  if (b_m <= 0.0f || sine_squared < flat_sine_squared) return set_one(support, a);
   const float per_sine_squared = reciprocal(sine_squared);
-  Support support;
+  support.count = 0;
   support.add(a, per_sine_squared * a_m);
   support.add(b, per_sine_squared * b_m);
-  return support;
+  support.out_m = support.depth_m[0] * a.normal + support.depth_m[1] * b.normal;
 }
 
-Vector3 out_m(const Support& support) {
-  Vector3 sum_m;
-  for (std::size_t i = 0; i < support.count; ++i) sum_m = sum_m + support.depth_m[i] * support.barriers[i]->normal;
-  return sum_m;
-}
-
-/// Returns the support of two barriers `a` and `b` and of a barrier `c` that excludes their point. Then `c` belongs to
-/// the support. Nearly parallel barriers count as two.
-Support three(const Barrier& a, const Barrier& b, const Barrier& c) {
+/// Sets the support of two barriers `a` and `b` and of a barrier `c` that excludes their point. Then `c` belongs to the
+/// support. Nearly parallel barriers count as two.
+void set_three(Support& support, const Barrier& a, const Barrier& b, const Barrier& c) {
   const Vector3 bc = cross(b.normal, c.normal), ca = cross(c.normal, a.normal), ab = cross(a.normal, b.normal);
   const float volume = dot(a.normal, bc);
   if (volume * volume > flat_sine_squared) {
@@ -69,33 +63,36 @@ Support three(const Barrier& a, const Barrier& b, const Barrier& c) {
     const Vector3 corner_m = per_volume * (a.depth_m * bc + b.depth_m * ca + c.depth_m * ab);
     const float a_m = per_volume * dot(corner_m, bc), b_m = per_volume * dot(corner_m, ca);
     if (a_m > 0.0f && b_m > 0.0f) {
-      Support support;
-      support.add(a, a_m);
-      support.add(b, b_m);
       support.add(c, per_volume * dot(corner_m, ab));
-      return support;
+      support.depth_m[0] = a_m;
+      support.depth_m[1] = b_m;
+      support.out_m = corner_m;
+      return;
     }
   }
-  const Support support = two(a, c);
-  return depth_at(b, out_m(support)) > depth_tolerance_m ? two(b, c) : support;
+  set_two(support, a, c);
+  if (depth_at(b, support.out_m) > depth_tolerance_m) set_two(support, b, c);
 }
 
 /// Part of the damper of each barrier that acts. It is 1 for barriers at right angles. The parts of parallel barriers
 /// have the sum 1, so that two parallel surfaces do not damp twice.
 std::array<float, 3> damper_parts(const Support& support) {
-  float sum_m = 0.0f;
-  for (std::size_t i = 0; i < support.count; ++i) sum_m += support.depth_m[i];
-  const float per_sum = reciprocal(sum_m);
-  std::array<float, 3> parts;
-  for (std::size_t i = 0; i < support.count; ++i) {
-    float part_m = support.depth_m[i];
-    for (std::size_t j = 0; j < support.count; ++j) {
-      const float cosine = dot(support.barriers[i]->normal, support.barriers[j]->normal);
-      if (j != i) part_m += (1.0f - cosine * cosine) * support.depth_m[j];
-    }
-    parts[i] = per_sum * part_m;
+  if (support.count == 1) return {1.0f, 0.0f, 0.0f};
+  const auto [a, b, c] = support.barriers;
+  const auto [a_m, b_m, c_m] = support.depth_m;
+  const auto sine_squared = [](const Barrier& first, const Barrier& second) {
+    const float cosine = dot(first.normal, second.normal);
+    return 1.0f - cosine * cosine;
+  };
+  const float ab = sine_squared(*a, *b);
+  if (support.count == 2) {
+    const float per_sum = reciprocal(a_m + b_m);
+    return {per_sum * (a_m + ab * b_m), per_sum * (b_m + ab * a_m), 0.0f};
   }
-  return parts;
+  const float ac = sine_squared(*a, *c), bc = sine_squared(*b, *c);
+  const float per_sum = reciprocal(a_m + b_m + c_m);
+  return {per_sum * (a_m + ab * b_m + ac * c_m), per_sum * (b_m + ab * a_m + bc * c_m),
+          per_sum * (c_m + ac * a_m + bc * b_m)};
 }
 
 /// Friction and viscosity on the surface of the main barrier.
@@ -120,35 +117,32 @@ Tangential friction(const Surface& surface, const Vector3& lag_m, const Vector3&
   return {sliding_N, surface.m_per_N * sliding_N, true};
 }
 
-Vector3 viscous_force_N(const Surface& surface, const Vector3& velocity_m_per_s, float normal_N) {
+[[gnu::cold]] Vector3 viscous_force_N(const Surface& surface, const Vector3& velocity_m_per_s, float normal_N) {
   const Vector3 force_N = -surface.viscosity_Ns_per_m * velocity_m_per_s;
   const float squared_N2 = dot(force_N, force_N);
   if (squared_N2 <= normal_N * normal_N || squared_N2 <= smallest_squared_N2) return force_N;
   return (normal_N * reciprocal_square_root(squared_N2)) * force_N;
 }
 
-/// Adds a barrier. At most three barriers remain.
-Support with(const Support& support, const Barrier& next) {
-  return support.count == 1 ? two(*support.barriers[0], next) : three(*support.barriers[0], *support.barriers[1], next);
-}
-
 }  // namespace
 
-// Each pass adds the barrier that excludes the point most.
-Support find_support(const Barriers& barriers) {
+// Each pass adds the barrier that excludes the point most. At most three barriers remain.
+void find_support(const Barriers& barriers, Support& support) {
+  support.count = 0;
   const Barrier* next = deepest(barriers, zero);
-  Support support;
-  if (next == nullptr) return support;
-  support = one(*next);
-  next = deepest(barriers, out_m(support));
-  if (next == nullptr) return support;
-  support = with(support, *next);
-  next = deepest(barriers, out_m(support));
-  return next == nullptr ? support : with(support, *next);
-}
-
-void Barriers::add(const Barrier& barrier) {
-  if (barrier.depth_m > -reach_m && count < maximum) list[count++] = barrier;
+  if (next == nullptr) return;
+  set_one(support, *next);
+  if (barriers.count == 1) return;
+  next = deepest(barriers, support.out_m);
+  if (next == nullptr) return;
+  set_two(support, *support.barriers[0], *next);
+  if (barriers.count == 2) return;
+  next = deepest(barriers, support.out_m);
+  if (next == nullptr) return;
+  if (support.count == 1)
+    set_two(support, *support.barriers[0], *next);
+  else
+    set_three(support, *support.barriers[0], *support.barriers[1], *next);
 }
 
 void Touch::follow(LocalModel& model) {
@@ -185,7 +179,9 @@ void Touch::add_model(const Vector3& probe_m) {
       feature.recess_m -= rise_m;
     }
     const float depth_m = dot(foot.normal, proxy_m_ - probe_m) - foot.height_m - feature.recess_m;
-    barriers_.add({foot.normal, depth_m, &feature.surface, &feature.velocity_m_per_s, rise_m, false});
+    if (barriers_.is_in_reach(depth_m))
+      barriers_.list[barriers_.count++] = {foot.normal, depth_m, &feature.surface, &feature.velocity_m_per_s,
+                                           rise_m,      false};
   }
   model_is_new_ = false;
 }
@@ -193,14 +189,17 @@ void Touch::add_model(const Vector3& probe_m) {
 void Touch::collect(const Vector3& probe_m, const Box* walls, const Surface& wall) {
   barriers_.count = 0;
   if (walls != nullptr) {
-    const auto add_wall = [&](float minimum_m, float maximum_m, float at_m, const Vector3& axis) {
-      const float low_m = minimum_m - at_m, high_m = at_m - maximum_m;
-      const bool is_low = low_m > high_m;
-      barriers_.add({is_low ? axis : -1.0f * axis, is_low ? low_m : high_m, &wall, &zero, 0.0f, true});
-    };
-    add_wall(walls->minimum_m.x, walls->maximum_m.x, probe_m.x, {1.0f, 0.0f, 0.0f});
-    add_wall(walls->minimum_m.y, walls->maximum_m.y, probe_m.y, {0.0f, 1.0f, 0.0f});
-    add_wall(walls->minimum_m.z, walls->maximum_m.z, probe_m.z, {0.0f, 0.0f, 1.0f});
+    const Vector3 low_m = walls->minimum_m - probe_m, high_m = probe_m - walls->maximum_m;
+    const std::array<float, 3> lows_m{low_m.x, low_m.y, low_m.z}, highs_m{high_m.x, high_m.y, high_m.z};
+#pragma GCC unroll 1
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool is_low = lows_m[axis] > highs_m[axis];
+      const float depth_m = is_low ? lows_m[axis] : highs_m[axis];
+      if (!barriers_.is_in_reach(depth_m)) continue;
+      const float sign = is_low ? 1.0f : -1.0f;
+      const Vector3 normal{axis == 0 ? sign : 0.0f, axis == 1 ? sign : 0.0f, axis == 2 ? sign : 0.0f};
+      barriers_.list[barriers_.count++] = {normal, depth_m, &wall, &zero, 0.0f, true};
+    }
   }
   if (shapes.any_plane()) {
     // A loop without branches finds the touched planes.
@@ -212,8 +211,9 @@ void Touch::collect(const Vector3& probe_m, const Box* walls, const Surface& wal
       below |= std::bit_cast<std::uint32_t>(height_m(i) - barriers_.reach_m) >> 31 << i;
 #pragma GCC unroll 1
     for (std::size_t i = 0; below != 0; ++i, below >>= 1)
-      if ((below & 1u) != 0)
-        barriers_.add({shapes.planes()[i].normal, -height_m(i), &shapes.surface_of_plane(i), &zero, 0.0f, false});
+      if ((below & 1u) != 0 && barriers_.count < Barriers::maximum)
+        barriers_.list[barriers_.count++] = {
+            shapes.planes()[i].normal, -height_m(i), &shapes.surface_of_plane(i), &zero, 0.0f, false};
   }
   std::uint32_t solids = shapes.solids();
 #pragma GCC unroll 1
@@ -224,7 +224,8 @@ void Touch::collect(const Vector3& probe_m, const Box* walls, const Surface& wal
     Foot foot;
     if (dot(from_centre_m, from_centre_m) > solid.reach_squared_m2 || !find_foot(solid, proxy_m_, foot)) continue;
     const float depth_m = dot(foot.normal, proxy_m_ - probe_m) - foot.height_m;
-    barriers_.add({foot.normal, depth_m, &shapes.surface_of_solid(i), &zero, 0.0f, false});
+    if (barriers_.is_in_reach(depth_m))
+      barriers_.list[barriers_.count++] = {foot.normal, depth_m, &shapes.surface_of_solid(i), &zero, 0.0f, false};
   }
   if (model_ != nullptr) add_model(probe_m);
 }
@@ -236,7 +237,8 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   force_.objects_N = zero;
   force_.raised_J = 0.0f;
   collect(probe_m, walls, wall);
-  const Support support = find_support(barriers_);
+  find_support(barriers_, support_);
+  const Support& support = support_;
   const bool is_new = !std::exchange(touches_, support.count != 0);
   is_wedged_ = support.count > 1;
   barriers_.reach_m = 0.0f;
@@ -247,7 +249,7 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   Vector3 normal_sum_N;
   float most_N = 0.0f;
   const Barrier* main = support.barriers[0];
-  const auto parts = support.count == 1 ? std::array{1.0f, 0.0f, 0.0f} : damper_parts(support);
+  const auto parts = damper_parts(support);
   const auto add = [&](const Barrier& barrier, const Vector3& force_N) {
     Vector3& sum_N = barrier.is_wall ? force_.walls_N : force_.objects_N;
     sum_N = sum_N + force_N;
@@ -268,7 +270,7 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
     most_N = normal_N;
     main = &barrier;
   }
-  const Vector3 frictionless_m = probe_m + out_m(support);
+  const Vector3 frictionless_m = probe_m + support.out_m;
   const Vector3 held_m = proxy_m_ + protocol::servo_period_s * *main->velocity_m_per_s;
   proxy_m_ = frictionless_m;
   const Surface& surface = *main->surface;

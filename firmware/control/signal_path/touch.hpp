@@ -41,15 +41,15 @@ struct Barriers {
   /// A barrier at this distance from the probe may exclude the point to which other barriers push the proxy.
   float reach_m = 0.0f;
 
-  /// Ignores a barrier beyond the reach.
-  void add(const Barrier& barrier);
+  bool is_in_reach(float depth_m) const { return depth_m > -reach_m && count < maximum; }
 };
 
-/// Barriers that support the nearest free point. That point is the probe plus the sum of depth times normal.
+/// Barriers that support the nearest free point.
 struct Support {
   std::array<const Barrier*, 3> barriers;
   std::array<float, 3> depth_m;
   std::size_t count = 0;
+  Vector3 out_m;  ///< from the probe to the nearest free point: the sum of depth times normal
 
   void add(const Barrier& barrier, float barrier_depth_m) {
     barriers[count] = &barrier;
@@ -59,7 +59,7 @@ struct Support {
 
 /// Finds the point nearest to the probe that no barrier excludes. Barriers within 0.2 degrees of parallel count as one
 /// barrier.
-Support find_support(const Barriers& barriers);
+void find_support(const Barriers& barriers, Support& support);
 
 /// Force on the hand.
 struct TouchForce {
@@ -104,6 +104,7 @@ class Touch {
   bool is_wedged_ = false;  ///< more than one barrier supported the proxy in the previous period
   // Results of this period are members, because the initialization of local variables takes cycles.
   Barriers barriers_;
+  Support support_;
   TouchForce force_;
 };
 
