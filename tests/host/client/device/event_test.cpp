@@ -120,16 +120,18 @@ TEST_CASE("pressed buttons and changed force sources are events at the time of t
 
 TEST_CASE("the event of a shape contains all values of the shape") {
   Shapes shapes;
-  shapes.planes[1] = Plane{{0.0f, 0.01f, -0.05f}, {0.0f, 0.0f, 1.0f}, {400.0f, 1.5f, 0.3f, 0.2f, 10.0f}};
+  shapes.planes[1] = Plane{{0.0f, 0.01f, -0.05f}, {0.0f, 0.0f, 1.0f}, {400.0f, 1.5f, 0.3f, 0.2f, 0.1f, 10.0f}};
   shapes.sphere = Sphere{{0.0f, 0.0f, 0.02f}, 0.015f, {}};
   const auto events = events_of_shapes(shapes, 50);
   REQUIRE(events.size() == 2);
   CHECK(events[0].kind == EventKind::shape);
   CHECK(events[0].at_periods == 50);
   CHECK(events[0].text ==
-        "Plane 2: point (0, 0.01, -0.05) m, normal (0, 0, 1), 400 N/m, 1.5 Ns/m, friction 0.3 and 0.2, life 10 s");
+        "Plane 2: point (0, 0.01, -0.05) m, normal (0, 0, 1), 400 N/m, 1.5 Ns/m, friction 0.3 and 0.2, viscosity 0.1 "
+        "Ns/m, life 10 s");
   CHECK(events[1].text ==
-        "Sphere: center (0, 0, 0.02) m, radius 0.015 m, 800 N/m, 2 Ns/m, friction 0 and 0, life inf s");
+        "Sphere: center (0, 0, 0.02) m, radius 0.015 m, 800 N/m, 2 Ns/m, friction 0 and 0, viscosity 0 Ns/m, life "
+        "inf s");
   CHECK(events_of_shapes({}, 50)[0].text == "All shapes were removed.");
 }
 

@@ -118,7 +118,7 @@ TEST_CASE("a feature report that is too short is refused with both lengths") {
   SUBCASE("information") {
     server.spoil[protocol::ReportId::information] = cut;
     message = message_of<device::Incompatible>([&] { device::Device::open(server.endpoint()); });
-    CHECK(contains(message, "information report has 103 bytes instead of 104"));
+    CHECK(contains(message, "information report has 107 bytes instead of 108"));
   }
   SUBCASE("transaction") {
     server.spoil[protocol::ReportId::transaction] = cut;
