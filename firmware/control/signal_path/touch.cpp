@@ -1,7 +1,5 @@
 #include "firmware/control/signal_path/touch.hpp"
 
-#include <utility>
-
 #include "firmware/control/signal_path/trigonometry.hpp"
 
 namespace inkwell::control {
@@ -239,7 +237,7 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   collect(probe_m, walls, wall);
   find_support(barriers_, support_);
   const Support& support = support_;
-  const bool is_new = !std::exchange(touches_, support.count != 0);
+  touches_ = support.count != 0;
   is_wedged_ = support.count > 1;
   barriers_.reach_m = 0.0f;
   if (support.count == 0) {
@@ -283,9 +281,7 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   const auto tangential = [&normal](const Vector3& vector) { return vector - dot(vector, normal) * normal; };
   const Vector3 sideways_m_per_s = tangential(velocity_m_per_s - *main->velocity_m_per_s);
   if (surface.static_friction != 0.0f) {
-    if (is_new) slides_ = false;
-    const Vector3 lag_m = is_new ? Vector3{} : tangential(held_m - frictionless_m);
-    const Tangential held = friction(surface, lag_m, sideways_m_per_s, normal_N, slides_);
+    const Tangential held = friction(surface, tangential(held_m - frictionless_m), sideways_m_per_s, normal_N, slides_);
     slides_ = held.slides;
     proxy_m_ = frictionless_m + held.lag_m;
     add(*main, held.force_N);

@@ -235,6 +235,41 @@ TEST_CASE("the friction ends where the probe leaves the surface, and starts wher
   CHECK(hand.at({0.0005f, 0.0f, -0.001f}).x == 0.0f);
 }
 
+TEST_CASE("a new touch sticks up to the static bound, also after a slide") {
+  Hand hand;
+  put_plane(hand.shapes, 0, up, 0.0f, rough(0.8f, 0.5f));
+  hand.place();
+  hand.at({0.0f, 0.0f, -0.001f});
+  hand.at({0.002f, 0.0f, -0.001f});
+  CHECK(hand.touch.slides());
+  hand.at({0.002f, 0.0f, 0.001f});
+  hand.at({0.002f, 0.0f, -0.001f});
+  CHECK(hand.at({0.0027f, 0.0f, -0.001f}).x == doctest::Approx(-0.7f));
+}
+
+TEST_CASE("the first period of a touch has the force of the place of the probe") {
+  Hand hand;
+  put_solid(hand.shapes, 0, {.core = Core::point, .centre_m = {0.05f, 0.0f, 0.0f}, .radius_m = 0.02f}, smooth);
+  hand.place();
+  CHECK(hand.at({0.069f, 0.0f, 0.0f}).x == doctest::Approx(1.0f).epsilon(1e-3));
+}
+
+TEST_CASE("nearly parallel planes are as hard as one plane") {
+  tests::Random random{23};
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 vector{random.between(-1, 1), random.between(-1, 1), random.between(0.2f, 1)};
+    const Vector3 normal = (1.0f / length(vector)) * vector;
+    const Vector3 bent = normal + Vector3{random.between(-1e-6f, 1e-6f), random.between(-1e-6f, 1e-6f), 0.0f};
+    Hand hand;
+    put_plane(hand.shapes, 0, normal, 0.0f, smooth);
+    put_plane(hand.shapes, 1, bent, random.between(-1e-7f, 1e-7f), smooth);
+    put_plane(hand.shapes, 2, normal, 0.0f, smooth);
+    hand.place();
+    hand.at(-0.001f * normal);
+    CHECK(length(hand.at(-0.001f * normal) - normal) < 5e-3f);
+  }
+}
+
 TEST_CASE("the friction continues while the probe passes from one surface to the next") {
   Hand hand;
   put_plane(hand.shapes, 0, {0.05f, 0.0f, 0.99875f}, 0.0f, rough(0.5f, 0.5f));
@@ -295,7 +330,7 @@ TEST_CASE("a surface that appears under the tip moves outward slowly, and its wo
     if (period == 100) CHECK(force_N == doctest::Approx(0.4f).epsilon(1e-2));
   }
   CHECK(force_N == doctest::Approx(1.0f).epsilon(1e-3));
-  CHECK(work_J == doctest::Approx(0.5f * 1000.0f * 1e-6f).epsilon(0.02));  // of the spring
+  CHECK(work_J == doctest::Approx(0.5f * 1000.0f * 1e-6f).scale(0).epsilon(0.02));  // of the spring
 }
 
 TEST_CASE("surfaces of any stiffness rise by at most 5 mN in a period, also in grooves of 60 degrees") {
@@ -314,10 +349,12 @@ TEST_CASE("surfaces of any stiffness rise by at most 5 mN in a period, also in g
           model_of({plane_feature({lean, 0, height}, 0, surface), plane_feature({-lean, 0, height}, 0, surface)});
       touch.follow(model);
       float force_N = 0.0f;
+      const float fastest_N = 1.01f * stiffness_N_per_m * LocalModel::recovery_m_per_s * protocol::servo_period_s;
       for (int period = 0; period < 4000; ++period) {
         const TouchForce force = touch.step(probe_m, {}, nullptr, smooth);
         // When the second surface touches, it still moves at the speed of one surface.
         CHECK(force.objects_N.z - force_N < (period == 1 ? 1.7e-2f : 5e-3f));
+        if (lean == 0.0f) CHECK(force.objects_N.z - force_N < fastest_N);
         force_N = force.objects_N.z;
       }
       CHECK(force_N == doctest::Approx(1e-3f * stiffness_N_per_m).epsilon(1e-2));
@@ -364,7 +401,9 @@ TEST_CASE("an exchange of local models under a pressing hand does not raise the 
 TEST_CASE("a moving surface carries the hand and its friction along at the servo rate") {
   Touch touch;
   const Vector3 start_m{0.0f, 0.0f, -0.0005f};
-  LocalModel model = model_of({plane_feature(up, 0.0f, rough(1.0f, 1.0f))});
+  Surface surface = rough(1.0f, 1.0f);
+  surface.damping_Ns_per_m = 1.0f;
+  LocalModel model = model_of({plane_feature(up, 0.0f, surface)});
   model.features[0].velocity_m_per_s = {0.2f, 0.0f, 0.1f};
   touch.step({0, 0, 0.001f}, {}, nullptr, smooth);
   touch.follow(model);
@@ -379,8 +418,8 @@ TEST_CASE("a moving surface carries the hand and its friction along at the servo
   // The surface continues, and the probe stops: the surface pushes and pulls the probe along.
   const Vector3 stopped_m = start_m + 0.02f * Vector3{0.2f, 0.0f, 0.1f};
   for (int period = 1; period <= 40; ++period) force_N = touch.step(stopped_m, {}, nullptr, smooth).objects_N;
-  CHECK(force_N.z == doctest::Approx(0.7f).epsilon(0.02));
-  CHECK(force_N.x == doctest::Approx(0.4f).epsilon(0.05));
+  CHECK(force_N.z == doctest::Approx(0.7f + 0.1f).epsilon(0.02));
+  CHECK(force_N.x == doctest::Approx(0.4f + 0.2f).epsilon(0.05));
 }
 
 TEST_CASE("a turning cylinder turns its axis, and a local model expires after its life") {
