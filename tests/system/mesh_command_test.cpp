@@ -51,7 +51,7 @@ TEST_CASE("inkwell mesh --json has the same figures") {
 
 TEST_CASE("inkwell mesh refuses files and options with a sentence") {
   const TemporaryDirectory directory;
-  write_file(directory / "note.txt", "This is no object.");
+  write_file(directory / "note.txt", "This is not an object.");
   const auto text = run_program("inkwell", {"mesh", directory.file("note.txt")});
   CHECK(text.exit_code == 1);
   CHECK(contains(text.err, "note.txt has an unknown format. Export the object as one of .stl, .obj"));

@@ -247,7 +247,7 @@ TEST_CASE("a new touch sticks up to the static bound, also after a slide") {
   CHECK(hand.at({0.0027f, 0.0f, -0.001f}).x == doctest::Approx(-0.7f));
 }
 
-TEST_CASE("the first period of a touch has the force of the place of the probe") {
+TEST_CASE("the first period of a touch has the force for the position of the probe") {
   Hand hand;
   put_solid(hand.shapes, 0, {.core = Core::point, .centre_m = {0.05f, 0.0f, 0.0f}, .radius_m = 0.02f}, smooth);
   hand.place();
