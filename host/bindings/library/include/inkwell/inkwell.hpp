@@ -51,25 +51,22 @@ inline void require(inkwell_result result) {
   if (result != INKWELL_OK) throw Failure(result);
 }
 
-/// See inkwell_list_devices().
-inline std::vector<inkwell_device> devices() {
+/// Returns all entries of a list function of the library.
+template <class Entry>
+std::vector<Entry> all_entries(inkwell_result (*list_entries)(Entry*, std::size_t, std::size_t*)) {
   std::size_t count = 0;
-  require(inkwell_list_devices(nullptr, 0, &count));
-  std::vector<inkwell_device> list(count);
-  require(inkwell_list_devices(list.data(), list.size(), &count));
-  if (count < list.size()) list.resize(count);  // an arm was unplugged in between
+  require(list_entries(nullptr, 0, &count));
+  std::vector<Entry> list(count);
+  require(list_entries(list.data(), list.size(), &count));
+  if (count < list.size()) list.resize(count);  // an entry was removed in between
   return list;
 }
 
+/// See inkwell_list_devices().
+inline std::vector<inkwell_device> devices() { return all_entries(inkwell_list_devices); }
+
 /// See inkwell_list_names().
-inline std::vector<inkwell_named_arm> names() {
-  std::size_t count = 0;
-  require(inkwell_list_names(nullptr, 0, &count));
-  std::vector<inkwell_named_arm> list(count);
-  require(inkwell_list_names(list.data(), list.size(), &count));
-  if (count < list.size()) list.resize(count);  // a name was removed in between
-  return list;
-}
+inline std::vector<inkwell_named_arm> names() { return all_entries(inkwell_list_names); }
 
 /// See inkwell_wait_for_devices(). Returns false, and leaves the list unchanged, after the time-out.
 inline bool wait_for_devices(std::vector<inkwell_device>& known, double timeout_s) {
