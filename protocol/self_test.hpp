@@ -67,7 +67,7 @@ inline constexpr std::string_view bridge_remedy =
   X(0, not_done, "Not tested yet, or not testable because another item failed.")                                                 \
   X(1, passed, "The item is correct.")                                                                               \
   X(2, failed, "The item is not correct.")                                                                           \
-  X(3, moved, "Not tested: the arm moved too fast. Hold the arm still and test again.")                               \
+  X(3, moved, "Not tested: the arm moved too fast. Hold the arm still and test again. Before the first completed test, motors that are not confirmed receive no current for the force.") \
   X(4, no_part, "Not tested: a motor with a current limit of 0 is not used.")                                          \
   X(5, broken_off, "Not tested: the bridges had no supply, or another fault interrupted the test.")                    \
   X(6, missing, "No current flows. Connect the motor, or check its bridge, its shunt and its amplifier.")                \

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace inkwell::link {
 namespace {
@@ -15,6 +16,7 @@ struct Expected {
   float resistance_ohm;
   float back_emf_Vs_per_count;
   float dead_V;
+  bool is_confirmed;
 };
 
 /// Resistance from the pulses of one current sign, negative if the current has the wrong sign. The magnitude is limited
@@ -35,7 +37,9 @@ float mean_back_emf_V(const PulseRound::Motor& motor, const Expected& expected) 
 
 /// Returns the failure, or `moved` for a moving arm.
 Result failed_or_moved(const PulseRound::Motor& motor, const Expected& expected, Result failure) {
-  return mean_back_emf_V(motor, expected) > PulseJudgement::moves_V ? Result::moved : failure;
+  const bool moves = expected.is_confirmed ? mean_back_emf_V(motor, expected) > PulseJudgement::moves_V
+                                           : std::abs(motor.moved_counts) > PulseJudgement::rests_counts;
+  return moves ? Result::moved : failure;
 }
 
 struct OfMotor {
@@ -55,7 +59,7 @@ Result judge_resistance(float forward_ohm, float backward_ohm, bool is_confirmed
   return is_motor ? Result::unknown_motor : Result::failed;
 }
 
-OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expected& expected, bool is_confirmed) {
+OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
   if (!motor.takes_part) return {{Result::no_part}, {Result::no_part}};
   const auto& current_A = motor.current_A;
   const float shown_ohm =
@@ -69,7 +73,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   const float estimate_ohm = std::min(std::fabs(forward_ohm), std::fabs(backward_ohm));
   Found found{Result::passed, worse_ohm};
   if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
-    found.result = judge_resistance(forward_ohm, backward_ohm, is_confirmed);
+    found.result = judge_resistance(forward_ohm, backward_ohm, expected.is_confirmed);
   if (found.result != Result::passed) found.result = failed_or_moved(motor, expected, found.result);
   if (found.result != Result::passed) return {found, {}, 0.0f, estimate_ohm};
   // Voltage loss extrapolated to zero current. The mean over both current signs cancels the effect of a back EMF.
@@ -126,8 +130,9 @@ PulseJudgement judge(const control::PulseRound& round, const control::Settings& 
         settings.motor_model.resistance_ohm[i],
         settings.motor_model.back_emf_Vs_per_rad[i] * settings.encoders.rad_per_count[i],
         round.dead_V,
+        settings.motor_model.is_confirmed,
     };
-    const OfMotor found = judge_motor(round.motors[i], i, expected, settings.motor_model.is_confirmed);
+    const OfMotor found = judge_motor(round.motors[i], i, expected);
     judgement.motors[i] = found.motor;
     judgement.bridges[i] = found.bridge;
     judgement.resistance_ohm[i] = found.kept_ohm;

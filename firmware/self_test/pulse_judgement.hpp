@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "firmware/control/settings.hpp"
 #include "firmware/control/supervision/self_test_pulses.hpp"
@@ -32,6 +33,9 @@ struct PulseJudgement {
   static constexpr float foreign_part = 0.25f;
   /// A higher mean back EMF indicates a moving arm, for which a wrong resistance is not a failure.
   static constexpr float moves_V = 0.15f;
+  /// The same for a motor that is not confirmed, because its torque constant is not known: the largest motion of its
+  /// encoder during the pulses. The pulses of an Omni motor move its encoder by two counts.
+  static constexpr std::int32_t rests_counts = 5;
   /// Stricter limits for a stored resistance. The resistances for both current signs may differ by the factor
   /// `kept_apart`. The mean back EMF must be below `rests_V`. On a freely moving arm, the measured resistance is 5 %
   /// too high.

@@ -1,5 +1,7 @@
 #include "firmware/self_test/self_test.hpp"
 
+#include <cmath>
+
 #include "firmware/placement/interrupt.hpp"
 
 namespace inkwell::link {
@@ -63,6 +65,8 @@ void SelfTest::follow(const control::Controller& controller, const control::Sett
 
 void SelfTest::begin(const Readings& readings, const control::Settings& settings, const control::Triple& offset_A) {
   test_ = begun_.load();
+  // Motors that are not confirmed are unknown until a self-test has judged them.
+  if (tests_ended_ == 0) measured_.awaits_motors = !settings.motor_model.is_confirmed;
   for (std::size_t i = static_cast<std::size_t>(first_of_each_test); i < entries_.size(); ++i) entries_[i] = {};
   offset_A_ = offset_A;
   test_since_ = samples_.recorded();
@@ -107,11 +111,12 @@ void SelfTest::begin_round() {
 }
 
 bool SelfTest::rests(const protocol::SignalValues& signals, const control::MotorModel& model) const {
-  const float limit_V = sizes_pulses_ ? rest_for_estimate_V : rest_V;
+  const float limit_rad_per_s = sizes_pulses_ ? rest_for_estimate_rad_per_s : rest_rad_per_s;
   bool rests = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    const float back_emf_V = signals[of_axis(protocol::Signal::joint_speed_1_rad_s, i)] * model.back_emf_Vs_per_rad[i];
-    rests = rests && back_emf_V < limit_V && back_emf_V > -limit_V;
+    const float speed_rad_per_s = std::fabs(signals[of_axis(protocol::Signal::joint_speed_1_rad_s, i)]);
+    rests &= model.is_confirmed ? speed_rad_per_s * std::fabs(model.back_emf_Vs_per_rad[i]) < rest_V
+                                : speed_rad_per_s < limit_rad_per_s;
   }
   return rests;
 }

@@ -31,8 +31,9 @@ class SelfTest {
   static constexpr std::uint32_t rest_patience_periods = control::periods_in(0.02f);
   /// Largest back EMF at the start of a round. At a higher speed the bridges would brake the arm perceptibly.
   static constexpr float rest_V = 0.3f;
-  /// The same for the first, small pulses of motors that are not confirmed.
-  static constexpr float rest_for_estimate_V = 0.05f;
+  /// Largest joint speed at the start of a round for motors that are not confirmed, because their torque constants are
+  /// not known either. The smaller speed is for the first, small pulses.
+  static constexpr float rest_rad_per_s = 1.0f, rest_for_estimate_rad_per_s = 0.15f;
   /// Invalid range at each end of a potentiometer track, relative to the track length. A healthy wiper never enters
   /// this range.
   static constexpr float gimbal_rail_part = 0.01f;

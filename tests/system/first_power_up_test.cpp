@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,18 +33,22 @@ const protocol::SelfTestEntry& of(const SelfTestReport& report, SelfTestItem ite
   return report.entries[static_cast<std::size_t>(item)];
 }
 
-/// Writes the description of an Omni with motors of this resistance. Its firmware still expects 2.18 ohm. Resistance
+/// Writes the description of an Omni with these motors. Its firmware still expects 2.18 ohm and 0.0234 Nm/A. Resistance
 /// and inductance of windings with equal copper mass are proportional.
-std::string write_arm(const TemporaryDirectory& directory, double resistance_ohm) {
+std::string write_arm(const TemporaryDirectory& directory, double resistance_ohm,
+                      double torque_constant_Nm_per_A = 0.0234) {
   const std::string path = directory.file("arm.toml");
   std::ifstream omni(INKWELL_SOURCE_DIRECTORY "/boards/arms/omni.toml");
   std::ofstream arm(path);
   for (std::string line; std::getline(omni, line);) {
-    const bool is_resistance = line.starts_with("motor_resistance_");
-    const bool is_inductance = line.starts_with("inductance_H");
-    const double value = is_inductance ? 0.000238 * resistance_ohm / 2.18 : resistance_ohm;
-    const bool is_changed = is_resistance || is_inductance;
-    arm << (is_changed ? fmt::format("{} = {}", line.substr(0, line.find(" =")), value) : line) << '\n';
+    const std::string key = line.substr(0, line.find(" ="));
+    if (line.starts_with("motor_resistance_"))
+      line = fmt::format("{} = {}", key, resistance_ohm);
+    else if (line.starts_with("inductance_H"))
+      line = fmt::format("{} = {}", key, 0.000238 * resistance_ohm / 2.18);
+    else if (line.starts_with("torque_constant_"))
+      line = fmt::format("{} = {}", key, torque_constant_Nm_per_A);
+    arm << line << '\n';
   }
   return path;
 }
@@ -151,6 +156,35 @@ TEST_CASE("a confirmed board with a missing motor offers a remedy that is possib
   rig.run(0.3);
   CHECK(rig.pose().state == State::ready);
   CHECK(of(rig.device->read_self_test(), SelfTestItem::motor_1).result == SelfTestResult::missing);
+}
+
+TEST_CASE("a motor of unknown resistance is measured although its torque constant is unknown too") {
+  struct Motor {
+    double resistance_ohm, torque_constant_Nm_per_A;
+  };
+  for (const auto& [motor, parameter_Nm_per_A] :
+       {std::pair{Motor{1.0, 0.0234}, 1.0f}, {Motor{6.0, 0.1}, 0.003f}, {Motor{20.0, 0.1}, 1.0f}}) {
+    CAPTURE(motor.resistance_ohm);
+    CAPTURE(parameter_Nm_per_A);
+    const TemporaryDirectory directory;
+    auto options = stepped_board(device::SimulationMode::fast, device::CyclePricing::likely);
+    options.arm = write_arm(directory, motor.resistance_ohm, motor.torque_constant_Nm_per_A);
+    BoardRig rig(options);
+    rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+    rig.set({{Parameter::torque_constant_1_Nm_per_A, parameter_Nm_per_A},
+             {Parameter::torque_constant_2_Nm_per_A, parameter_Nm_per_A},
+             {Parameter::torque_constant_3_Nm_per_A, parameter_Nm_per_A}});
+    const SelfTestReport report = rig.device->self_test();
+    rig.run(0.1);
+    CHECK(rig.pose().state == State::ready);
+    for (const SelfTestItem item : {SelfTestItem::motor_1, SelfTestItem::motor_2, SelfTestItem::motor_3}) {
+      CHECK(of(report, item).result == SelfTestResult::unknown_motor);
+      CHECK(of(report, item).figure == doctest::Approx(motor.resistance_ohm).epsilon(0.15));
+    }
+    switch_force_on(rig);
+    CHECK(rig.pose().state == State::limited);
+    CHECK(largest_current_A(rig.control) < 0.02);
+  }
 }
 
 }  // namespace inkwell::tests

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "firmware/self_test/pulse_judgement.hpp"
 
@@ -216,6 +217,19 @@ TEST_CASE("while the arm moves in either direction, a failure is reported as mov
   slowly.simulated.motors[0].is_open = true;
   slowly.counts_per_period = {0.04f, 0.0f, 0.0f};
   CHECK(slowly.judgement().motors[0].result == SelfTestResult::failed);
+}
+
+TEST_CASE("the motion of a motor that is not confirmed is judged without its torque constant, which is not known") {
+  using protocol::Parameter;
+  for (const auto& [counts_per_period, torque_constant_Nm_per_A, result] :
+       {std::tuple{0.1f, 0.001f, SelfTestResult::moved}, std::tuple{0.05f, 1.0f, SelfTestResult::failed}}) {
+    Bench bench;
+    bench.parameters[Parameter::motors_confirmed] = 0.0f;
+    bench.parameters[Parameter::torque_constant_1_Nm_per_A] = torque_constant_Nm_per_A;
+    bench.simulated.motors[0].resistance_ohm = 0.2f;
+    bench.counts_per_period = {counts_per_period, 0.0f, 0.0f};
+    CHECK(bench.judgement().motors[0].result == result);
+  }
 }
 
 TEST_CASE("a motor without current limit takes no part") {

@@ -117,6 +117,47 @@ TEST_CASE("motors of 0.5 to 30 ohm are measured with at most 0.8 A, and drive th
   }
 }
 
+TEST_CASE("unknown motors of a slowly moving arm are measured, whatever the torque constant of the parameters is") {
+  constexpr int periods_per_count = 66;  // 0.1 rad/s
+  NewBoard board;
+  protocol::ParameterSet parameters = tests::omni_parameters();
+  parameters[protocol::Parameter::torque_constant_2_Nm_per_A] = 1.0f;
+  board.settings = control::prepare(parameters);
+  for (auto& motor : board.motors.motors) motor.resistance_ohm = 6.0f;
+  board.run_while(State::starting);
+  for (int period = 0; board.controller.state() == State::testing; ++period) {
+    board.samples.encoder_counts[1] += period % periods_per_count == 0;
+    board.run(1);
+  }
+  CHECK(board.result(SelfTestItem::motor_2) == SelfTestResult::unknown_motor);
+}
+
+TEST_CASE("a first self-test of a moving arm drives only confirmed motors, and a later one of the resting arm all") {
+  for (const bool is_confirmed : {false, true}) {
+    CAPTURE(is_confirmed);
+    NewBoard board;
+    board.settings.motor_model.is_confirmed = is_confirmed;
+    board.run_while(State::starting);
+    while (board.controller.state() == State::testing) {
+      ++board.samples.encoder_counts[1];
+      board.run(1);
+    }
+    CHECK(board.result(SelfTestItem::motor_2) == SelfTestResult::moved);
+    board.switch_force_on();
+    const auto is_limited = [&] { return (board.controller.limits() & static_cast<std::uint8_t>(Limit::motors)) != 0; };
+    CHECK(is_limited() == !is_confirmed);
+    CHECK((board.drive.duty == control::Triple{}) == !is_confirmed);
+    board.controller.carry_out(tests::command(Command::stop));
+    board.run(2);
+    board.controller.carry_out(tests::command(Command::self_test));
+    board.run(1);
+    board.run_while(State::testing);
+    CHECK(board.result(SelfTestItem::motor_2) == SelfTestResult::passed);
+    board.switch_force_on();
+    CHECK_FALSE(is_limited());
+  }
+}
+
 TEST_CASE("a self-test of a moving arm does not release motors that an earlier self-test found to be unknown") {
   NewBoard board;
   for (auto& motor : board.motors.motors) motor.resistance_ohm = 6.0f;
