@@ -25,7 +25,8 @@ class InputFile {
  public:
   explicit InputFile(const std::filesystem::path& path) : name_(path.filename().string()) {
     // Without O_NONBLOCK, a pipe without a writer blocks.
-    file_ = local::Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    file_ = local::Descriptor(
+        local::repeat_interrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK); }));
     if (!file_.is_open())
       fail(fmt::format("cannot be opened: {}. Check its name and its permissions", std::strerror(errno)));
     struct stat status {};
