@@ -75,7 +75,8 @@ LoadedObject load_object(const LoadRequest& request, const importer::Progress& p
 }
 
 Loading::Loading(LoadRequest request)
-    : loaded_(std::async(std::launch::async, [this, request = std::move(request)] {
+    : name_(request.example.empty() ? request.file.filename().string() : request.example),
+      loaded_(std::async(std::launch::async, [this, request = std::move(request)] {
         return load_object(request, [this](double done) {
           progress_ = done;
           return !is_canceled_;
@@ -83,6 +84,11 @@ Loading::Loading(LoadRequest request)
       })) {}
 
 Loading::~Loading() { cancel(); }
+
+std::string Loading::step() const {
+  return fmt::format("loading {}: {}", name_,
+                     progress_ < import_share ? "reading the mesh" : "building the search tree");
+}
 
 bool Loading::is_done_within(std::chrono::milliseconds time) const {
   return loaded_.wait_for(time) == std::future_status::ready;

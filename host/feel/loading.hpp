@@ -49,12 +49,15 @@ class Loading {
   Loading& operator=(const Loading&) = delete;
 
   double progress() const { return progress_; }  ///< 0 to 1
+  /// The object and the present step, such as "loading skull.stl: reading the mesh".
+  std::string step() const;
   bool is_done_within(std::chrono::milliseconds time) const;
   void cancel() { is_canceled_ = true; }
   /// Waits for the object. Call this function once. @throws importer::Error as load_object().
   LoadedObject take() { return loaded_.get(); }
 
  private:
+  std::string name_;
   std::atomic<double> progress_ = 0;
   std::atomic<bool> is_canceled_ = false;
   std::future<LoadedObject> loaded_;

@@ -156,6 +156,31 @@ TEST_CASE("contact points have markers") {
   CHECK(std::abs(pixel.green - colours::wall_touched.green) <= exactly);
 }
 
+TEST_CASE("the command feel shows its object in the window") {
+  WindowRig rig({"--flat-colours", "feel", "--example", "ball"});
+  rig.move_to({700, 60});
+  rig.wait_until("the ball is drawn", [&](const Sight&) { return ObjectWindow::object_pixels(rig.picture()) > 2000; });
+  CHECK_FALSE(rig.look().says("loading"));
+}
+
+TEST_CASE("the window shows the progress of the loading, and a banner for an object that cannot be used") {
+  ObjectWindow window;
+  const auto wait_for = [&window](const std::string& said) {
+    window.rig().wait_until(said, [&](const Sight& now) { return now.says(said); });
+  };
+  window.place("progress loading skull.stl: reading the mesh, 12 %\n");
+  wait_for("loading skull.stl: reading the mesh, 12 %");
+  window.place("progress loading skull.stl: building the search tree, 73 %\n");
+  wait_for("building the search tree, 73 %");
+  window.place("object 0 0 0 0\n");
+  window.wait_for_pixels(2000, 100'000);
+  CHECK_FALSE(window.rig().look().says("loading"));
+  CHECK_FALSE(window.rig().look().says("The object cannot be used."));
+  window.place("problem skull.stl is empty. Export the object again.\n");
+  wait_for("The object cannot be used.");
+  wait_for("skull.stl is empty. Export the object again. Then start the program again.");
+}
+
 TEST_CASE("the view contains objects outside the box, until the user has moved the view") {
   ObjectWindow window;
   const Item box_only = window.rig().look().item("scene/sphere");

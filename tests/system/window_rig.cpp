@@ -93,7 +93,9 @@ protocol::ParameterSet WindowRig::parameters_at_start() {
 
 json WindowRig::ask(const std::string& question) {
   window_.write_line(question);
-  const json answer = json::parse(window_.read_line());
+  std::string line = window_.read_line();
+  while (!line.starts_with('{')) line = window_.read_line();  // a command may print text
+  const json answer = json::parse(line);
   if (answer.contains("error")) throw std::runtime_error(answer["error"].get<std::string>());
   return answer;
 }

@@ -21,6 +21,7 @@
 #include "host/geometry/examples.hpp"
 
 #include "host/companion/command_line/arm_workspace.hpp"
+#include "host/companion/command_line/awaited_object.hpp"
 #include "host/companion/command_line/force_switch.hpp"
 #include "host/companion/command_line/next_pose.hpp"
 #include "host/companion/command_line/progress_bar.hpp"
@@ -44,21 +45,25 @@ struct FeelOptions {
 
 constexpr std::uint32_t object_id = 1;
 
-feel::LoadedObject load(const DeviceOptions& device_options, const FeelOptions& options) {
-  using namespace std::chrono_literals;
+feel::LoadRequest request_of(const DeviceOptions& device_options, const FeelOptions& options) {
   feel::LoadRequest request{.file = options.file,
                             .example = options.example,
                             .scale = options.scale,
                             .is_fit = options.is_fit,
                             .workspace = arm_workspace(device_options)};
   if (!options.unit.empty()) request.unit = importer::parse_unit(options.unit);
-  const std::string step = "loading " + (options.example.empty() ? request.file.filename().string() : options.example);
+  return request;
+}
+
+/// A small object needs no progress.
+constexpr std::chrono::milliseconds silent_time{300};
+
+feel::LoadedObject load(feel::Loading& loading) {
+  using namespace std::chrono_literals;
   const InterruptGuard interrupt;
-  feel::Loading loading(std::move(request));
   ProgressBar bar;
-  // A small object needs no bar.
-  for (auto wait = 300ms; !loading.is_done_within(wait); wait = 100ms) {
-    bar(step, loading.progress());
+  for (auto wait = silent_time; !loading.is_done_within(wait); wait = 100ms) {
+    bar(loading.step(), loading.progress());
     if (interrupt.is_interrupted()) loading.cancel();
   }
   bar.end();
@@ -100,12 +105,24 @@ window::ShownObject shown(const feel::LoadedObject& loaded, const feel::ServoVie
           placement.to_workspace(loaded.surface->middle_m()), glm::quat(placement.rotation)};
 }
 
-int feel_in_window(const CommandContext& context, const feel::LoadedObject& loaded, feel::Servo& servo) {
-  return context.open_window([&](window::WindowOptions& window) {
+/// The window opens when a small object is loaded, or while a large object is loaded.
+int feel_in_window(const CommandContext& context, const FeelOptions& options, feel::Loading& loading,
+                   contact::Publication& publication, feel::Servo& servo) {
+  AwaitedObject awaited(loading, [&](const feel::LoadedObject& loaded) {
+    describe(loaded, options);
+    publication.publish(scene_of(loaded, options));
+  });
+  if (loading.is_done_within(silent_time)) awaited.follow();
+  if (!awaited.problem().empty()) throw device::Error(awaited.problem());
+  const int code = context.open_window([&](window::WindowOptions& window) {
     window.on_pose = [&servo](device::Device& device, const device::DrivenPose& driven) {
       servo.follow(device, driven);
     };
-    window.shown_objects = [&loaded, &servo] { return std::vector{shown(loaded, servo.view())}; };
+    window.object_loading = [&awaited] { return awaited.follow(); };
+    window.shown_objects = [&awaited, &servo] {
+      return awaited.object() ? std::vector{shown(*awaited.object(), servo.view())}
+                              : std::vector<window::ShownObject>{};
+    };
     window.contact_points_m = [&servo] {
       const feel::ServoView view = servo.view();
       std::vector<glm::vec3> points_m;
@@ -114,6 +131,8 @@ int feel_in_window(const CommandContext& context, const feel::LoadedObject& load
       return points_m;
     };
   });
+  if (!awaited.problem().empty()) throw device::Error(awaited.problem());
+  return code;
 }
 
 // ---- without a window ----
@@ -190,13 +209,14 @@ void check(const DeviceOptions& device_options, const FeelOptions& options) {
 
 int feel_object(const CommandContext& context, const FeelOptions& options) {
   check(context.device, options);
-  const feel::LoadedObject loaded = load(context.device, options);
-  if (!context.device.json) describe(loaded, options);
+  feel::Loading loading(request_of(context.device, options));
   contact::Publication publication;
-  publication.publish(scene_of(loaded, options));
   feel::Servo servo(publication);
-  return options.is_headless ? feel_without_window(context.device, options.seconds, servo)
-                             : feel_in_window(context, loaded, servo);
+  if (!options.is_headless) return feel_in_window(context, options, loading, publication, servo);
+  const feel::LoadedObject loaded = load(loading);
+  if (!context.device.json) describe(loaded, options);
+  publication.publish(scene_of(loaded, options));
+  return feel_without_window(context.device, options.seconds, servo);
 }
 
 std::string example_names() {

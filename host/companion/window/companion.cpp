@@ -26,7 +26,7 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       style_{&palette(settings.theme), fonts_.fonts(), scale},
       desk_(options.list_devices, options.serial_number, options.on_pose),
       updater_(options.firmware, options.board),
-      objects_(options.shown_objects, options.contact_points_m),
+      objects_(options.shown_objects, options.contact_points_m, options.object_loading),
       scope_pane_(settings.scope),
       column_({.desk = desk_,
                .parameters_file = settings_.parameters_file,
@@ -143,7 +143,8 @@ void Companion::lay_out(ImVec2 size, double now_s) {
                 {.status_height = status_bar_.height(size.x, style_),
                  .replay_height = replay_bar_.is_open() ? style_.points(replay_bar_points) : 0.0f},
                 settings_, style_.scale);
-  const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open(), updater_.sight());
+  const std::optional<Banner> banner =
+      banner_of(desk_.view(), replay_bar_.is_open(), updater_.sight(), objects_.problem());
   const float height_of_banner = banner ? banner_height(layout.banner(0.0f).size.x, style_, *banner) : 0.0f;
   StatusBarOutcome outcome = draw_status_bar(layout);
   draw_scene(layout, height_of_banner, now_s, outcome);

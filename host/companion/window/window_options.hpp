@@ -63,6 +63,8 @@ struct WindowOptions {
   /// Returns the points at which the tip touches objects, in workspace axes. Called like `shown_objects`. Null: no
   /// points.
   std::function<std::vector<glm::vec3>()> contact_points_m = {};
+  /// Returns the state of the loading of objects. Called like `shown_objects`. Null: nothing is loaded.
+  std::function<ObjectLoading()> object_loading = {};
   /// For Session::on_pose() of each device.
   std::function<void(device::Device&, const device::DrivenPose&)> on_pose = {};
 

@@ -90,6 +90,7 @@ TEST_CASE("a worker thread loads the object, reports its progress, and can be ca
     const feel::LoadedObject loaded = loading.take();
     CHECK(loaded.name == "ball");
     CHECK(loading.progress() > 0.5);
+    CHECK(loading.step() == "loading ball: building the search tree");
   }
   SUBCASE("canceled") {
     CHECK_THROWS_WITH_AS(feel::load_object({.example = "ball", .workspace = workspace}, [](double) { return false; }),
@@ -98,5 +99,6 @@ TEST_CASE("a worker thread loads the object, reports its progress, and can be ca
   SUBCASE("missing file") {
     feel::Loading loading({.file = "/nowhere/skull.stl", .workspace = workspace});
     CHECK_THROWS_AS(loading.take(), importer::Error);
+    CHECK(loading.step() == "loading skull.stl: reading the mesh");
   }
 }

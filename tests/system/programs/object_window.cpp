@@ -1,7 +1,8 @@
 // The window with objects that a text file places.
 // Usage: object_window --usbip ADDRESS [--control ADDRESS] [--objects FILE] [--ball SUBDIVISIONS] [OPTION...]
-// Each line of the file is `object X Y Z ANGLE` or `contact X Y Z`, in meters and radians. The file is read for each
-// frame. Without a file, one object rotates. The other options are options of `inkwell`.
+// Each line of the file is `object X Y Z ANGLE` or `contact X Y Z`, in meters and radians, or `progress TEXT` or
+// `problem TEXT`. The file is read for each frame. Without a file, one object rotates. The other options are options of
+// `inkwell`.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -26,12 +27,17 @@ constexpr glm::vec3 axis{0.0f, 1.0f, 0.0f};
 struct Placements {
   std::vector<window::ShownObject> objects;
   std::vector<glm::vec3> points_m;
+  window::ObjectLoading loading;
 };
 
 Placements read_placements(const std::string& path, const std::shared_ptr<const geometry::Mesh>& mesh) {
   Placements placements;
   std::ifstream file(path);
   for (std::string word; file >> word;) {
+    if (word == "progress" || word == "problem") {
+      std::getline(file >> std::ws, word == "progress" ? placements.loading.progress : placements.loading.problem);
+      continue;
+    }
     glm::vec3 position_m{0.0f};
     float angle_rad = 0.0f;
     file >> position_m.x >> position_m.y >> position_m.z;
@@ -89,6 +95,7 @@ int main(int count, char** arguments) {
   } else {
     options.shown_objects = [=] { return read_placements(placements_file, shared).objects; };
     options.contact_points_m = [=] { return read_placements(placements_file, shared).points_m; };
+    options.object_loading = [=] { return read_placements(placements_file, shared).loading; };
   }
   return window::run_window(options);
 }

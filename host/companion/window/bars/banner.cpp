@@ -41,7 +41,8 @@ std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpda
 
 }  // namespace
 
-std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware) {
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware,
+                                const std::string& object_problem) {
   if (view.pose && view.pose->state == State::fault) {
     const auto& test = view.status.self_test;
     const auto [cause, remedy] =
@@ -58,6 +59,8 @@ std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const Fi
     return Banner{*view.status.command_problem,
                   "STOP switches the force off, even while another program drives the arm.", BannerAction::take_over,
                   "Take over"};
+  if (!object_problem.empty())
+    return Banner{"The object cannot be used.", object_problem + " Then start the program again.", BannerAction::none};
   const MotorHeatView heat = motor_heat_view(view.status.information->report);
   if (heat.level == HeatLevel::cool) return firmware_banner(view, firmware);
   return Banner{fmt::format("Motor {} is {}: motor heat {:.0f} %.", heat.motor,

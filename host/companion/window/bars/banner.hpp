@@ -21,7 +21,9 @@ struct Banner {
 
   bool is_fault() const { return action == BannerAction::clear_fault; }
 };
-std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware);
+/// `object_problem`: sentences about an object that cannot be used, or empty.
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware,
+                                const std::string& object_problem);
 float banner_height(float width, const Style& style, const Banner& banner);
 /// Returns the action of the pressed button.
 BannerAction draw_banner(ImVec2 origin, ImVec2 size, const Style& style, const Banner& banner);

@@ -80,8 +80,11 @@ bool differs_visibly(std::span<const glm::vec3> a, std::span<const glm::vec3> b)
 }
 
 SceneObjects::SceneObjects(std::function<std::vector<ShownObject>()> objects,
-                           std::function<std::vector<glm::vec3>()> contact_points_m)
-    : objects_source_(std::move(objects)), contact_points_source_(std::move(contact_points_m)) {}
+                           std::function<std::vector<glm::vec3>()> contact_points_m,
+                           std::function<ObjectLoading()> loading)
+    : objects_source_(std::move(objects)),
+      contact_points_source_(std::move(contact_points_m)),
+      loading_source_(std::move(loading)) {}
 
 std::vector<ShownObject> SceneObjects::newest_objects() const {
   std::vector<ShownObject> objects;
@@ -99,9 +102,11 @@ std::vector<glm::vec3> SceneObjects::newest_contact_points_m() const {
   return points_m;
 }
 
+ObjectLoading SceneObjects::newest_loading() const { return loading_source_ ? loading_source_() : ObjectLoading{}; }
+
 bool SceneObjects::has_changed() const {
-  return preparer_.finished() != seen_finished_ || differs_visibly(shown_, newest_objects()) ||
-         differs_visibly(contact_points_m_, newest_contact_points_m());
+  return preparer_.finished() != seen_finished_ || newest_loading() != loading_ ||
+         differs_visibly(shown_, newest_objects()) || differs_visibly(contact_points_m_, newest_contact_points_m());
 }
 
 void SceneObjects::place(std::vector<ShownObject> objects) {
@@ -125,6 +130,8 @@ void SceneObjects::place(std::vector<ShownObject> objects) {
 
 bool SceneObjects::follow(bool is_hidden) {
   seen_finished_ = preparer_.finished();
+  ObjectLoading loading = is_hidden ? ObjectLoading{} : newest_loading();
+  const bool has_loaded = std::exchange(loading_, std::move(loading)) != loading_;
   std::vector<ShownObject> objects = is_hidden ? std::vector<ShownObject>{} : newest_objects();
   std::vector<glm::vec3> points_m = is_hidden ? std::vector<glm::vec3>{} : newest_contact_points_m();
   const bool has_moved = differs_visibly(shown_, objects);
@@ -141,7 +148,7 @@ bool SceneObjects::follow(bool is_hidden) {
   for (SceneObject& object : scene_) object.is_ready = object.preparation->is_done;
   const bool has_new_meshes = drawn_meshes() != drawn_before;
   if (has_new_meshes) ++meshes_revision_;
-  return has_moved || has_new_points || has_new_meshes;
+  return has_moved || has_new_points || has_new_meshes || has_loaded;
 }
 
 std::optional<geometry::Box> SceneObjects::box() const {
@@ -163,6 +170,7 @@ std::optional<geometry::Box> SceneObjects::box() const {
 }
 
 std::string SceneObjects::progress() const {
+  if (!loading_.progress.empty()) return loading_.progress;
   std::size_t triangles = 0;
   for (const SceneObject& object : scene_)
     if (!object.is_ready && object.preparation->triangles > drawn_triangles_max)

@@ -73,9 +73,10 @@ bool differs_visibly(std::span<const glm::vec3> a, std::span<const glm::vec3> b)
 
 class SceneObjects {
  public:
-  /// Either function may be null.
+  /// Each function may be null.
   SceneObjects(std::function<std::vector<ShownObject>()> objects,
-               std::function<std::vector<glm::vec3>()> contact_points_m);
+               std::function<std::vector<glm::vec3>()> contact_points_m,
+               std::function<ObjectLoading()> loading = nullptr);
 
   /// Returns true if follow() would change the picture.
   bool has_changed() const;
@@ -89,21 +90,26 @@ class SceneObjects {
   std::optional<geometry::Box> box() const;
   /// Changes when the set of drawn meshes changes.
   std::uint64_t meshes_revision() const { return meshes_revision_; }
-  /// Text about the preparation of large meshes; empty if all large meshes are ready.
+  /// Text about the loading of objects, or about the preparation of large meshes; empty if all large meshes are ready.
   std::string progress() const;
+  /// Sentences about an object that cannot be used; empty: none.
+  const std::string& problem() const { return loading_.problem; }
   /// Adds meshes and placements, but not the contact points, which are labels.
   void add_to(PictureDigest& digest) const;
 
  private:
   std::vector<ShownObject> newest_objects() const;
   std::vector<glm::vec3> newest_contact_points_m() const;
+  ObjectLoading newest_loading() const;
   void place(std::vector<ShownObject> objects);
 
   std::function<std::vector<ShownObject>()> objects_source_;
   std::function<std::vector<glm::vec3>()> contact_points_source_;
+  std::function<ObjectLoading()> loading_source_;
   std::vector<ShownObject> shown_;  ///< the source of `scene_`
   std::vector<SceneObject> scene_;
   std::vector<glm::vec3> contact_points_m_;
+  ObjectLoading loading_;
   std::uint64_t meshes_revision_ = 0;
   std::uint64_t seen_finished_ = 0;
   MeshPreparer preparer_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
@@ -18,6 +19,14 @@ struct ShownObject {
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  ///< unit quaternion, from mesh axes to workspace axes
 
   bool operator==(const ShownObject&) const = default;
+};
+
+/// State of the loading of objects.
+struct ObjectLoading {
+  std::string progress{};  ///< work that goes on; empty: none
+  std::string problem{};   ///< sentences about an object that cannot be used; empty: none
+
+  bool operator==(const ObjectLoading&) const = default;
 };
 
 }  // namespace inkwell::window

@@ -140,6 +140,24 @@ TEST_CASE("the finished preparation of a large mesh needs a new picture") {
   CHECK(scene.box());
 }
 
+TEST_CASE("each change of the loading needs a frame, and a replay hides the loading") {
+  window::ObjectLoading loading;
+  SceneObjects scene(nullptr, nullptr, [&] { return loading; });
+  CHECK_FALSE(scene.follow());
+  loading.progress = "loading skull.stl: reading the mesh, 12 %";
+  CHECK(scene.has_changed());
+  CHECK(scene.follow());
+  CHECK(scene.progress() == loading.progress);
+  CHECK_FALSE(scene.has_changed());
+  loading = {.problem = "skull.stl is empty."};
+  CHECK(scene.has_changed());
+  CHECK(scene.follow());
+  CHECK(scene.progress().empty());
+  CHECK(scene.problem() == "skull.stl is empty.");
+  CHECK(scene.follow(true));
+  CHECK(scene.problem().empty());
+}
+
 TEST_CASE("contact points appear, move and disappear without a new picture of the objects") {
   Table table({{box()}});
   const std::uint64_t before = table.digest();
