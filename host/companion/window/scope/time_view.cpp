@@ -46,7 +46,6 @@ class TimeView final : public PlotView {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_axes(list, area, frame.style, "s", "");
     draw_trigger_level(list, area, frame);
-    draw_fault(list, area, frame);
     const std::vector<std::size_t> order = drawing_order(plot_.signals);
     for (const std::size_t i : order)
       if (const SignalSeries* series = frame.timeline.history().find_over(plot_.signals[i]))
@@ -54,6 +53,7 @@ class TimeView final : public PlotView {
     for (const std::size_t i : order)
       if (const SignalSeries* series = frame.timeline.history().find(plot_.signals[i]))
         draw_signal(list, area, *series, first, last, line_colour(frame.style, i), frame.style);
+    draw_fault(list, area, frame);  // no line crosses the label
     take_mouse(area, frame);
     frame.cursors.draw(area, frame.style);
     if (frame.with_statistics) draw_statistics(list, area, frame);

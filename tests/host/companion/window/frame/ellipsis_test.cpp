@@ -24,3 +24,10 @@ TEST_CASE("a label that does not fit ends in an ellipsis, between two characters
   CHECK(with_ellipsis("Wall", 1, characters).empty());
   CHECK(with_ellipsis("", 1, characters).empty());
 }
+
+TEST_CASE("a shortened label keeps the number at its end if the number fits") {
+  CHECK(with_ellipsis("Motor resistance 1", 14, characters) == "Motor resis\u2026 1");
+  CHECK(with_ellipsis("Motor resistance 12", 8, characters) == "Moto\u2026 12");
+  CHECK(with_ellipsis("Motor resistance 1", 3, characters) == "Mo\u2026");
+  CHECK(with_ellipsis("Figure12", 6, characters) == "Figur\u2026");
+}
