@@ -79,6 +79,26 @@ TEST_CASE("pictures: a program for an Omni drives" * doctest::skip()) {
   program.write_line("");
 }
 
+TEST_CASE("pictures: an object is touched, then grabbed and turned" * doctest::skip()) {
+  WindowRig rig({"--layout", "contact", "feel", "--example", "skull"});
+  rig.wait_until("the skull is drawn", [](const Sight& now) { return !now.says("loading"); });
+  rig.switch_force_on();
+  const auto start_m = rig.true_probe_m();
+  rig.control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 250, .damping_Ns_per_m = 3});
+  rig.control.dock(false);
+  constexpr device::Vector3 pressed_m{0.010, 0.026, -0.022};
+  rig.control.hand_path({{0.0, start_m}, {0.8, {0.06, 0.0, 0.03}}, {1.6, {0.05, 0.06, -0.01}}, {2.2, pressed_m}});
+  rig.control.run(2.4);
+  rig.control.resume();
+  rig.move_to(aside);
+  rig.picture(picture_file("object-touched"));
+  rig.control.buttons(true, false);
+  rig.control.hand_path({{0.0, pressed_m}, {0.3, pressed_m}, {1.6, {-0.03, 0.05, 0.0}}});
+  rig.control.run(2.0);
+  rig.control.resume();
+  rig.picture(picture_file("object-grabbed"));
+}
+
 TEST_CASE("pictures: small and large windows, and 192 dots per inch" * doctest::skip()) {
   struct Size {
     const char *width, *height, *scale;
