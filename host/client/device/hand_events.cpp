@@ -13,8 +13,8 @@ std::string sources_text(std::uint8_t sources) {
   std::vector<std::string_view> names;
   for (const auto& row : protocol::force_source_table)
     if (protocol::is_felt(sources, row.source)) names.push_back(row.name);
-  return names.empty() ? "The hand feels no force source."
-                       : fmt::format("The hand feels {}.", fmt::join(names, " and "));
+  return names.empty() ? "No force source is active."
+                       : fmt::format("Active force sources: {}.", fmt::join(names, " and "));
 }
 
 std::string vector_text(const std::array<float, 3>& vector) {

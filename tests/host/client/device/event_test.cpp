@@ -95,7 +95,7 @@ TEST_CASE("pressed buttons and changed force sources are events at the time of t
   CHECK(events[0].text == "Button 1 was pressed.");
   CHECK(events[0].at_periods == 1020);
   CHECK(events[1].kind == EventKind::source);
-  CHECK(events[1].text == "The hand feels walls.");
+  CHECK(events[1].text == "Active force sources: walls.");
   pose.switches = 2;
   pose.time_periods = 1040;
   events = hand.take(pose);
@@ -115,7 +115,7 @@ TEST_CASE("pressed buttons and changed force sources are events at the time of t
   pose.time_periods += 2000;
   events = hand.take(pose);
   REQUIRE(events.size() == 1);
-  CHECK(events[0].text == "The hand feels shapes and program.");
+  CHECK(events[0].text == "Active force sources: shapes and program.");
 }
 
 TEST_CASE("the event of a shape contains all values of the shape") {
