@@ -150,7 +150,7 @@ const Parameter table[] = {
      [](const Source&, double* v) { *v = tabletop_offset_mm; }},
     {0x2553, 0, "INPUT_DOF", "", 1, type_integer, "6", [](const Source&, double* v) { *v = input_axes; }},
     {0x2554, 0, "OUTPUT_DOF", "", 1, type_integer, "3", [](const Source&, double* v) { *v = output_axes; }},
-    {0x2555, 0, "CALIBRATION_STYLE", "", 1, type_integer, "4: inkwell",
+    {0x2555, 0, "CALIBRATION_STYLE", "", 1, type_integer, "4, the inkwell",
      [](const Source&, double* v) { *v = calibration_style_inkwell; }},
 
     {0x2600, 0, "UPDATE_RATE", "Hz", 1, type_integer | type_real, "scheduler rate that was set",

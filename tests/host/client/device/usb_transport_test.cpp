@@ -11,6 +11,7 @@
 #include "host/client/device/device.hpp"
 #include "host/client/device/session.hpp"
 #include "protocol/black_box.hpp"
+#include "protocol/report_table.hpp"
 #include "protocol/usb_identity.hpp"
 #include "tests/failure.hpp"
 
@@ -309,7 +310,7 @@ TEST_CASE("reports pass through hidapi unchanged") {
   const auto force = bytes_of(protocol::ForceReport{});
   transport->write_report(force);
   REQUIRE(arm.written.size() == 1);
-  check_sent(force, arm.written[0], sizeof(protocol::CommandReport));
+  check_sent(force, arm.written[0], protocol::longest_report(protocol::ReportKind::output));
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::black_box_rows)] = {};
   const auto request = bytes_of(protocol::BlackBoxRequest{.first_row = 3});
   transport->set_feature(request);
