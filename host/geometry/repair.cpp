@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -21,13 +22,24 @@ constexpr float needle_height_over_edge = 1e-6f, needle_height_over_coordinate =
 
 bool has_equal_corners(const Face& face) { return face[0] == face[1] || face[1] == face[2] || face[2] == face[0]; }
 
-std::size_t remove_faces(Mesh& mesh, const std::vector<bool>& is_removed) {
+/// Removes faces and, if `sources` is not null, their source numbers.
+std::size_t remove_faces(Mesh& mesh, const std::vector<bool>& is_removed, std::vector<std::uint32_t>* sources) {
   std::size_t kept = 0;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face)
-    if (!is_removed[face]) mesh.faces[kept++] = mesh.faces[face];
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    if (is_removed[face]) continue;
+    if (sources != nullptr) (*sources)[kept] = (*sources)[face];
+    mesh.faces[kept++] = mesh.faces[face];
+  }
   const std::size_t removed = mesh.faces.size() - kept;
   mesh.faces.resize(kept);
+  if (sources != nullptr) sources->resize(kept);
   return removed;
+}
+
+std::size_t remove_degenerate(Mesh& mesh, std::vector<std::uint32_t>* sources) {
+  std::vector<bool> is_removed(mesh.faces.size());
+  std::transform(mesh.faces.begin(), mesh.faces.end(), is_removed.begin(), has_equal_corners);
+  return remove_faces(mesh, is_removed, sources);
 }
 
 void remove_unused_vertices(Mesh& mesh) {
@@ -126,7 +138,7 @@ void mark_copies(const Mesh& mesh, const Adjacency& adjacency, const std::vector
       is_removed[copy.face] = true;
 }
 
-std::size_t remove_duplicates(Mesh& mesh, const Adjacency& adjacency) {
+std::size_t remove_duplicates(Mesh& mesh, const Adjacency& adjacency, std::vector<std::uint32_t>* sources) {
   auto candidates = duplicate_candidates(mesh, adjacency);
   std::vector<bool> is_removed(mesh.faces.size());
   std::vector<Candidate> copies, opposite;
@@ -144,7 +156,7 @@ std::size_t remove_duplicates(Mesh& mesh, const Adjacency& adjacency) {
   }
   mark_copies(mesh, adjacency, copies, is_removed);
   mark_second_sides(mesh, adjacency, opposite, is_removed);
-  return remove_faces(mesh, is_removed);
+  return remove_faces(mesh, is_removed, sources);
 }
 
 // ---- Orientation
@@ -277,7 +289,7 @@ class NeedleRepair {
     height_m_ = needle_height_over_coordinate * std::max({largest_m.x, largest_m.y, largest_m.z});
   }
 
-  void run(Repairs& repairs) {
+  void run(Repairs& repairs, std::vector<std::uint32_t>* sources) {
     std::vector<bool> is_removed(mesh_.faces.size());
     // Each swap may leave a lower needle next to it, which the next pass replaces.
     constexpr int passes = 8;
@@ -297,7 +309,7 @@ class NeedleRepair {
       }
       if (!has_swapped) break;
     }
-    if (repairs.degenerate > 0) remove_faces(mesh_, is_removed);
+    if (repairs.degenerate > 0) remove_faces(mesh_, is_removed, sources);
   }
 
  private:
@@ -390,16 +402,20 @@ Measurements measure_parts(const Mesh& mesh, const Topology& topology) {
 
 Measurements measure(const Mesh& mesh) { return measure_parts(mesh, find_topology(mesh, find_neighbors(mesh))); }
 
-Report repair(Mesh& mesh) {
+Report repair(Mesh& mesh, std::vector<std::uint32_t>* sources) {
   Repairs repairs;
-  repairs.degenerate = std::erase_if(mesh.faces, has_equal_corners);
+  if (sources != nullptr) {
+    sources->resize(mesh.faces.size());
+    std::iota(sources->begin(), sources->end(), 0u);
+  }
+  repairs.degenerate = remove_degenerate(mesh, sources);
   Adjacency adjacency = find_neighbors(mesh);
-  repairs.duplicates = remove_duplicates(mesh, adjacency);
+  repairs.duplicates = remove_duplicates(mesh, adjacency, sources);
   if (repairs.duplicates > 0) adjacency = find_neighbors(mesh);
   repairs.turned = unify_orientation(mesh, adjacency);
   if (repairs.turned > 0) adjacency = find_neighbors(mesh);
   Repairs flat;
-  NeedleRepair(mesh, adjacency).run(flat);
+  NeedleRepair(mesh, adjacency).run(flat, sources);
   if (flat.degenerate > 0) adjacency = find_neighbors(mesh);
   repairs.degenerate += flat.degenerate;
   repairs.needles = flat.needles;

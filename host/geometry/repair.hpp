@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "host/geometry/mesh.hpp"
 
@@ -46,7 +48,7 @@ Measurements measure(const Mesh& mesh);
 
 /// Removes degenerate and duplicate triangles, gives the triangles of each part one orientation, and turns closed parts
 /// that are inside out. A cavity is a part inside another part, and its triangles face the cavity. The mesh must be
-/// valid and welded, and remains so.
-Report repair(Mesh& mesh);
+/// valid and welded, and remains so. `sources`: becomes the number that each remaining triangle had before the repair.
+Report repair(Mesh& mesh, std::vector<std::uint32_t>* sources = nullptr);
 
 }  // namespace inkwell::geometry

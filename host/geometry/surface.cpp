@@ -109,7 +109,8 @@ std::size_t bytes(const std::vector<Element>& elements) {
 
 }  // namespace
 
-std::shared_ptr<const Surface> Surface::build(Mesh mesh, const Progress& progress) {
+std::shared_ptr<const Surface> Surface::build(Mesh mesh, const Progress& progress,
+                                              std::span<const std::uint32_t> sources) {
   const auto proceeds = [&](double fraction) { return !progress || progress(fraction); };
   if (!proceeds(0)) return nullptr;
   const std::shared_ptr<Surface> surface(new Surface);
@@ -124,6 +125,8 @@ std::shared_ptr<const Surface> Surface::build(Mesh mesh, const Progress& progres
                           [&](double fraction) { return proceeds(tree_start + (tree_end - tree_start) * fraction); });
   if (!tree) return nullptr;
   surface->tree_ = std::move(*tree);
+  if (!sources.empty())
+    for (std::uint32_t& face : surface->original_faces_) face = sources[face];
   reorder_vertices(mesh);
   surface->mesh_ = std::move(mesh);
   if (!proceeds(tree_end)) return nullptr;

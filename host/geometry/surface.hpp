@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -27,8 +28,10 @@ struct SurfacePoint {
 /// are most precise near 0. Several threads can use a surface at the same time.
 class Surface {
  public:
-  /// Prepares a valid, welded mesh (Mesh). Returns nullptr if `progress` canceled the work.
-  static std::shared_ptr<const Surface> build(Mesh mesh, const Progress& progress = {});
+  /// Prepares a valid, welded mesh (Mesh). Returns nullptr if `progress` canceled the work. `sources`: for each face,
+  /// the number that original_face() returns. By default, the number in `mesh`.
+  static std::shared_ptr<const Surface> build(Mesh mesh, const Progress& progress = {},
+                                              std::span<const std::uint32_t> sources = {});
 
   /// The faces are in the order of the tree.
   const Mesh& mesh() const { return mesh_; }

@@ -227,3 +227,25 @@ TEST_CASE("an empty mesh is neither closed nor repaired") {
   CHECK(report.measurements.parts == 0);
   CHECK_FALSE(report.measurements.is_closed());
 }
+
+TEST_CASE("the remaining triangles know their numbers before the repair") {
+  Cube cube = make_cube();
+  const auto faces = cube.faces;
+  cube.faces.insert(cube.faces.begin(), {0, 0, 1});
+  cube.faces.insert(cube.faces.begin() + 4, {faces[2][1], faces[2][2], faces[2][0]});  // a copy of triangle 2
+  std::swap(cube.faces[6][0], cube.faces[6][1]);
+  Mesh mesh = weld(cube.vertices, cube.faces);
+  const Mesh welded = mesh;
+  std::vector<std::uint32_t> sources;
+  const Report report = repair(mesh, &sources);
+  CHECK(report.repairs.degenerate == 1);
+  CHECK(report.repairs.duplicates == 1);
+  CHECK(report.repairs.turned == 1);
+  REQUIRE(sources.size() == 12);
+  for (std::size_t face = 0; face < 12; ++face) {
+    Face now = mesh.faces[face], before = welded.faces[sources[face]];
+    std::ranges::sort(now);
+    std::ranges::sort(before);
+    CHECK(now == before);
+  }
+}
