@@ -21,6 +21,8 @@ struct Material {
   float static_friction = 0;
   float dynamic_friction = 0;
   float viscosity_Ns_per_m = 0;
+
+  bool operator==(const Material&) const = default;
 };
 
 inline constexpr std::size_t materials_max = 16;

@@ -31,10 +31,11 @@ contact::Shape without_owner(const contact::Shape& shape) {
 
 }  // namespace
 
-void Servo::follow_publication() {
+void Servo::follow_publication(double time_s) {
   const contact::Scene* const newest = publication_.latest();
   if (newest == published_) return;
   published_ = newest;
+  published_at_s_ = time_s;
   scene_.objects.reserve(contact::objects_max);
   scene_.objects.clear();
   const std::size_t count = std::min(newest->objects.size(), contact::objects_max);
@@ -46,6 +47,17 @@ void Servo::follow_publication() {
   scene_.materials = newest->materials;
   materials_are_new_ = true;
   if (grab_.is_holding() && find_object(grab_.object()) == nullptr) grab_.cancel();
+}
+
+void Servo::move_objects(double time_s) {
+  const double age_s = time_s - published_at_s_;
+  for (std::size_t index = 0; index < scene_.objects.size(); ++index) {
+    const contact::Object& published = published_->objects[index];
+    if (!published.moves() || (grab_.is_holding() && grab_.object() == published.id)) continue;
+    contact::Object& moved = scene_.objects[index];
+    moved.placement = contact::placement_after(published, age_s);
+    if (age_s >= contact::motion_max_s) moved.velocity_m_per_s = moved.spin_rad_per_s = {};
+  }
 }
 
 contact::Object* Servo::find_object(std::uint32_t id) {
@@ -91,10 +103,12 @@ void Servo::follow_button(const device::Pose& pose, const HandPlacement& hand) {
 }
 
 std::optional<device::LocalModel> Servo::step(const device::DrivenPose& driven) {
-  follow_parameters(driven);
-  follow_publication();
-  if (published_ == nullptr) return std::nullopt;
   const device::Pose& pose = driven.pose;
+  const double time_s = device::board_time_s(pose.time_periods);
+  follow_parameters(driven);
+  follow_publication(time_s);
+  if (published_ == nullptr) return std::nullopt;
+  move_objects(time_s);
   const bool is_felt = pose.is_referenced && protocol::force_is_on(pose.state);
   if (!is_felt || driven.is_first) {
     // Without a force the hand may enter an object. The hand feels that object after the tip has left it.
@@ -105,10 +119,11 @@ std::optional<device::LocalModel> Servo::step(const device::DrivenPose& driven) 
   }
   if (!pose.is_referenced) return std::nullopt;
   const glm::dvec3 position_m = vector_of(pose.position_m);
-  velocity_.add(device::board_time_s(pose.time_periods), {position_m.x, position_m.y, position_m.z});
+  velocity_.add(time_s, {position_m.x, position_m.y, position_m.z});
   const auto velocity_m_s = velocity_.velocity_m_s();
-  follow_button(pose, {position_m, glm::quat_cast(glm::dmat3(kinematics::stylus_rotation(
-                                       array_of(pose.joint_rad), array_of(pose.gimbal_rad), arm_)))});
+  if (button_ == ButtonUse::grabs)
+    follow_button(pose, {position_m, glm::quat_cast(glm::dmat3(kinematics::stylus_rotation(
+                                         array_of(pose.joint_rad), array_of(pose.gimbal_rad), arm_)))});
   const auto begin = Clock::now();
   newest_step_ = contact::step(scene_, tool_,
                                {.position_m = position_m,
@@ -117,7 +132,7 @@ std::optional<device::LocalModel> Servo::step(const device::DrivenPose& driven) 
   counters_.longest_step_s =
       std::max(counters_.longest_step_s, std::chrono::duration<double>(Clock::now() - begin).count());
   ++counters_.steps;
-  show();
+  show(time_s);
   const bool has_features = newest_step_.model.count > 0;
   if (!is_felt || !driven.is_newest) return std::nullopt;
   if (!has_features && !sent_features_) return std::nullopt;
@@ -138,7 +153,7 @@ void Servo::follow(device::Device& device, const device::DrivenPose& driven) {
   ++counters_.models_sent;
 }
 
-void Servo::show() {
+void Servo::show(double time_s) {
   // A reader that copies the view right now sees the next step.
   const std::unique_lock lock(view_mutex_, std::try_to_lock);
   if (!lock) return;
@@ -148,6 +163,7 @@ void Servo::show() {
   view_.contacts = newest_step_.contacts;
   view_.contact_count = newest_step_.contact_count;
   view_.held = grab_.is_holding() ? std::optional(grab_.object()) : std::nullopt;
+  view_.time_s = time_s;
   view_.counters = counters_;
 }
 

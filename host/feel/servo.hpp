@@ -34,15 +34,24 @@ struct ServoView {
   std::array<contact::Contact, contact::features_max> contacts{};
   std::size_t contact_count = 0;
   std::optional<std::uint32_t> held;  ///< Object::id of the grabbed object
+  double time_s = 0;                  ///< board time of the pose
   ServoCounters counters;
 };
 
-/// Button 1 of the stylus grabs the touched object. The hand does not feel a grabbed object, because the object has no
-/// weight. After its release, the object is felt again when the tip has left it.
+/// Effect of button 1 of the stylus.
+enum class ButtonUse : std::uint8_t {
+  /// Grabs the touched object. The hand does not feel a grabbed object, because the object has no weight. After its
+  /// release, the object is felt again when the tip has left it.
+  grabs,
+  none,
+};
+
+/// An object with a velocity moves from its published placement on, for at most contact::motion_max_s of board time.
 class Servo {
  public:
   /// The publication must outlive the servo.
-  explicit Servo(contact::Publication& publication) : publication_(publication) {}
+  explicit Servo(contact::Publication& publication, ButtonUse button = ButtonUse::grabs)
+      : publication_(publication), button_(button) {}
 
   /// Runs a contact step and sends the local model. For Session::on_pose(). Waits for the device only when the
   /// materials are new, and allocates memory only then. Throws device::Error if the device refuses the materials.
@@ -52,18 +61,24 @@ class Servo {
   /// except at the first scene.
   std::optional<device::LocalModel> step(const device::DrivenPose& driven);
 
+  /// Result of the newest step, for the thread that calls step().
+  const contact::Step& newest_step() const { return newest_step_; }
+
   /// The newest state. Any thread may call this function.
   ServoView view() const;
 
  private:
-  void follow_publication();
+  void follow_publication(double time_s);
+  void move_objects(double time_s);
   void follow_parameters(const device::DrivenPose& driven);
   void follow_button(const device::Pose& pose, const HandPlacement& hand);
   contact::Object* find_object(std::uint32_t id);
-  void show();
+  void show(double time_s);
 
   contact::Publication& publication_;
+  const ButtonUse button_;
   const contact::Scene* published_ = nullptr;
+  double published_at_s_ = 0;  ///< board time of the first step with the published scene
   /// Copy of the published scene with the moved objects. Its pointers to surfaces own nothing, so that this thread
   /// never frees a mesh. The published scene owns the surfaces.
   contact::Scene scene_;

@@ -156,3 +156,41 @@ TEST_CASE("a servo without a scene does nothing") {
   CHECK_FALSE(servo.step({pose, parameters, 1, true, true}));
   CHECK(servo.view().counters.steps == 0);
 }
+
+TEST_CASE("an object with a velocity moves from its placement for 20 ms of board time, and then stops") {
+  ServoRig rig;
+  rig.at(0.06);
+  auto scene = std::make_shared<contact::Scene>();
+  scene->objects.push_back({.id = ball, .shape = contact::Sphere{ball_radius_m}, .velocity_m_per_s = {0, 0, 0.1}});
+  rig.publication.publish(scene);
+  const auto height_m = [&] { return rig.servo.view().objects[0].placement.position_m.z; };
+  std::optional<device::LocalModel> model;
+  for (int millisecond = 0; millisecond < 19; ++millisecond) {
+    model = rig.at(0.034);
+    CHECK(height_m() == doctest::Approx(0.0001 * millisecond).epsilon(1e-6));
+  }
+  REQUIRE(model);
+  CHECK(model->features[0].moves);
+  CHECK(model->velocity_m_per_s[2] == doctest::Approx(0.1));
+  for (int millisecond = 0; millisecond < 10; ++millisecond) model = rig.at(0.036);
+  CHECK(height_m() == doctest::Approx(0.002));
+  REQUIRE(model);
+  CHECK_FALSE(model->features[0].moves);
+  CHECK(rig.servo.view().time_s == doctest::Approx(device::board_time_s(rig.pose.time_periods)));
+}
+
+TEST_CASE("a servo without grabbing feels the touched object also while the button is pressed") {
+  ServoRig rig;
+  feel::Servo servo(rig.publication, feel::ButtonUse::none);
+  const auto step = [&](double height_m) {
+    rig.pose.position_m[2] = static_cast<float>(height_m);
+    ++rig.pose.sequence;
+    return servo.step({rig.pose, rig.parameters, rig.revision, rig.pose.sequence == 1, true});
+  };
+  step(0.06);
+  step(0.034);
+  rig.press_button(true);
+  CHECK(step(0.034));
+  CHECK_FALSE(servo.view().held);
+  CHECK(servo.newest_step().contact_count == 1);
+}
