@@ -35,6 +35,58 @@ TEST_CASE("while the device does not accept a force or a command, only the newes
   CHECK(reports.forces.back().sequence == 1);  // no force counts as lost
 }
 
+TEST_CASE("a local model and a force share a report; the model repeats the force for the life of the force") {
+  QueuedReports reports;
+  device::Device device(std::make_unique<QueuedTransport>(reports));
+  library::PoseFeed poses;
+  library::ForceOutput output(device, poses);
+  const device::LocalModel model;
+  constexpr double life_s = 0.05;
+  std::size_t sent = 0;
+  const auto next = [&] {
+    const auto report = reports.wait_for_models(++sent);
+    reports.accept_one();
+    return report;
+  };
+  output.send_model(model, 10, life_s);  // no program sends forces
+  CHECK(next().mode == protocol::ForceMode::none);
+  output.send({1, 0, 0}, 10);
+  reports.wait_for_forces(1);
+  reports.accept_one();
+  // The program answers each pose: the model waits for the force of its pose.
+  output.send_model(model, 11, life_s);
+  output.send({2, 0, 0}, 11);
+  auto report = next();
+  CHECK(report.force[0] == 2000);
+  CHECK(report.pose_sequence == 11);
+  CHECK(report.mode == protocol::ForceMode::instead_of_walls);
+  // The program is late: the second model does not wait.
+  output.send_model(model, 12, life_s);
+  output.send_model(model, 13, life_s);
+  report = next();
+  CHECK(report.force[0] == 2000);
+  CHECK(report.pose_sequence == 13);
+  CHECK(report.interval_ms == 1);
+  output.send_model(model, 61, life_s);
+  CHECK(next().mode == protocol::ForceMode::instead_of_walls);
+  output.send_model(model, 62, life_s);
+  CHECK(next().mode == protocol::ForceMode::none);
+  // A slow program: the rest of the interval remains.
+  for (std::uint32_t pose = 70; pose <= 170; pose += 20) {
+    output.send({3, 0, 0}, pose);
+    reports.wait_for_forces(2 + (pose - 70) / 20);
+    reports.accept_one();
+  }
+  output.send_model(model, 175, life_s);
+  CHECK(next().interval_ms == 15);
+  output.let_go();
+  reports.wait_for_forces(8);
+  reports.accept_one();
+  output.send_model(model, 176, life_s);
+  CHECK(next().mode == protocol::ForceMode::none);
+  CHECK(reports.forces.size() == 8);
+}
+
 TEST_CASE("a thread that reads poses can request the driver without waiting for the request of another thread") {
   QueuedReports reports;
   std::binary_semaphore is_asked(0), may_answer(0);

@@ -21,10 +21,11 @@ namespace inkwell::tests {
 struct QueuedReports {
   std::mutex mutex;
   std::condition_variable changed;
-  std::deque<protocol::PoseReport> poses;     ///< sent by the device
-  std::vector<protocol::ForceReport> forces;  ///< written to the device
-  int under_way = 0;                          ///< number of written reports that are not accepted yet
-  std::function<void()> on_feature_request;   ///< called before the request is answered with nothing
+  std::deque<protocol::PoseReport> poses;          ///< sent by the device
+  std::vector<protocol::ForceReport> forces;       ///< written to the device
+  std::vector<protocol::LocalModelReport> models;  ///< written to the device
+  int under_way = 0;                               ///< number of written reports that are not accepted yet
+  std::function<void()> on_feature_request;        ///< called before the request is answered with nothing
 
   void accept_one() {
     const std::lock_guard lock(mutex);
@@ -34,6 +35,12 @@ struct QueuedReports {
   void wait_for_forces(std::size_t count) {
     std::unique_lock lock(mutex);
     changed.wait(lock, [&] { return forces.size() >= count; });
+  }
+  /// Returns the newest of this number of models.
+  protocol::LocalModelReport wait_for_models(std::size_t count) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return models.size() >= count; });
+    return models.back();
   }
 };
 
@@ -51,8 +58,10 @@ class QueuedTransport final : public device::Transport {
   void write_report(std::span<const std::byte> report) override {
     const std::lock_guard lock(reports_.mutex);
     ++reports_.under_way;
-    if (report.size() == sizeof(protocol::ForceReport))
+    if (static_cast<protocol::ReportId>(report[0]) == protocol::ReportId::force)
       std::memcpy(&reports_.forces.emplace_back(), report.data(), sizeof(protocol::ForceReport));
+    if (static_cast<protocol::ReportId>(report[0]) == protocol::ReportId::local_model)
+      std::memcpy(&reports_.models.emplace_back(), report.data(), sizeof(protocol::LocalModelReport));
     reports_.changed.notify_all();
   }
   bool wait_until_written(std::chrono::milliseconds timeout) override {

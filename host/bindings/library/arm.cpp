@@ -11,6 +11,7 @@
 #include "host/client/device/clear_fault.hpp"
 #include "host/client/device/fault_text.hpp"
 #include "host/client/device/hand_events.hpp"
+#include "host/feel/device_model.hpp"
 
 #include "host/bindings/library/errors.hpp"
 
@@ -50,7 +51,9 @@ Clock::duration duration_of(double timeout_s) {
 }  // namespace
 
 Arm::Arm(const std::string& address, double timeout_s)
-    : connection_(address, poses_, reports_, duration_of(timeout_s)),
+    : scene_([this](const contact::Scene& scene) { return place_materials(scene); }),
+      connection_(address, poses_, reports_, duration_of(timeout_s),
+                  [this](const device::Pose& report) { feel_scene(report); }),
       force_(connection_.device(), poses_),
       scope_(connection_.device(), poses_, reports_),
       parameter_watch_([this] { note_foreign_changes(); }),
@@ -62,6 +65,7 @@ Arm::Arm(const std::string& address, double timeout_s)
 
 Arm::~Arm() {
   servo_.request_end();
+  scene_.stop();
   force_.stop();  // discards later forces of a servo that is still running
   if (connection_.device().drives() && poses_.loss() != Loss::link) bid_farewell();
 }
@@ -176,9 +180,27 @@ void Arm::clear_fault() {
 }
 
 void Arm::claim() {
-  if (connection_.device().drives()) return;
+  const auto is_done = [this] { return connection_.device().drives() && !scene_.lacks_materials(); };
+  if (is_done()) return;
   const std::lock_guard lock(claim_mutex_);
-  if (!connection_.device().drives()) device().claim();
+  if (is_done()) return;
+  if (!connection_.device().drives()) {
+    forget_shapes();
+    device().claim();
+  }
+  prepare_scene();
+}
+
+void Arm::forget_shapes() {
+  scene_.forget_materials();
+  const std::lock_guard lock(shapes_mutex_);
+  placed_shapes_ = {};
+}
+
+void Arm::prepare_scene() {
+  if (!scene_.is_used()) return;
+  scene_.set_parameters(device().parameters());
+  scene_.send_materials();
 }
 
 void Arm::release() {
@@ -190,6 +212,7 @@ void Arm::release() {
     device().place_shapes({});
     device().disable_force();
   });
+  forget_shapes();
   poses_.stop_using_force();
   device().release();
 }
@@ -206,7 +229,9 @@ void Arm::set_thread_priority(int priority) {
 
 void Arm::take_over() {
   const std::lock_guard lock(claim_mutex_);
+  if (!connection_.device().drives()) forget_shapes();
   device().take_over();
+  prepare_scene();
 }
 
 void Arm::drive(const double (&force_N)[3], std::uint32_t pose_sequence) {
@@ -219,8 +244,54 @@ void Arm::drive(const double (&force_N)[3], std::uint32_t pose_sequence) {
 
 void Arm::place_shapes(const device::Shapes& shapes) {
   claim();
-  device().place_shapes(shapes);
+  {
+    const std::lock_guard lock(shapes_mutex_);
+    device().place_shapes(shapes);
+    placed_shapes_ = shapes;
+    shapes_placed_at_s_ = last().pose.time_s;
+  }
   if (scope_.is_recording()) scope_.note(device::events_of_shapes(shapes, periods_of(last().pose)));
+}
+
+// ---- scene -------------------------------------------------------------------------------------------------
+
+std::uint32_t Arm::add_object(contact::Object object, const contact::Material& material) {
+  if (!scene_.is_used()) scene_.set_parameters(device().parameters());
+  return scene_.add(std::move(object), material);
+}
+
+bool Arm::place_materials(const contact::Scene& scene) {
+  if (!connection_.device().drives()) return false;
+  const std::lock_guard lock(shapes_mutex_);
+  device::Shapes shapes = living_shapes();
+  shapes.materials = feel::device_materials(scene);
+  device().place_shapes(shapes);
+  return true;
+}
+
+device::Shapes Arm::living_shapes() const {
+  const auto passed_s = static_cast<float>(last().pose.time_s - shapes_placed_at_s_);
+  const auto has_expired = [&](device::Surface& surface) {
+    surface.life_s -= passed_s;
+    return surface.life_s < protocol::servo_period_s;
+  };
+  device::Shapes shapes = placed_shapes_;
+  for (auto& plane : shapes.planes)
+    if (plane && has_expired(plane->surface)) plane.reset();
+  if (shapes.sphere && has_expired(shapes.sphere->surface)) shapes.sphere.reset();
+  std::erase_if(shapes.solids, [&](device::Solid& solid) { return has_expired(solid.surface); });
+  return shapes;
+}
+
+void Arm::feel_scene(const device::Pose& report) {
+  if (!scene_.is_used()) return;
+  scene_.follow(report, connection_.device().drives(), [&](const Scene::Model& model) {
+    force_.send_model(model.model, static_cast<std::uint32_t>(report.sequence), model.force_life_s);
+  });
+}
+
+void Arm::follow_parameters() {
+  if (scene_.is_used()) scene_.set_parameters(device().parameters());
 }
 
 void Arm::start_servo(Servo::Function function) {
@@ -264,12 +335,14 @@ void Arm::set_parameters(const std::vector<device::ParameterChange>& changes) {
   const bool changes_arm =
       std::any_of(changes.begin(), changes.end(), [](const auto& change) { return info(change.first).belongs_to_arm; });
   if (changes_arm) connection_.set_geometry(device().parameters());
+  follow_parameters();
 }
 
 void Arm::restore_parameters() {
   const std::lock_guard lock(parameters_mutex_);
   note_change([&] { return device().restore_stored_parameters().applied_at_periods; });
   connection_.set_geometry(device().parameters());
+  follow_parameters();
 }
 
 void Arm::factory_reset() {
@@ -279,6 +352,7 @@ void Arm::factory_reset() {
     return std::nullopt;
   });
   connection_.set_geometry(device().parameters());
+  follow_parameters();
 }
 
 // ---- recordings and losses ---------------------------------------------------------------------------------

@@ -6,9 +6,11 @@
 //   ForceOutput sends the newest force in a thread.
 //   ScopeStream reads the samples of the selected signals in a thread.
 //   Servo calls the servo function in a thread.
+//   Scene computes contacts with objects in the pose thread.
 //
-// Any thread may call any part. While a part holds its mutex, the part may call only PoseFeed. While PoseFeed holds its
-// mutex, PoseFeed may call only Turns. In lock step, the pose thread runs ForceOutput and ScopeStream.
+// Any thread may call any part. While a part holds its mutex, the part may call only PoseFeed; Scene may also call
+// ForceOutput and the device. While PoseFeed holds its mutex, PoseFeed may call only Turns. In lock step, the pose
+// thread runs ForceOutput and ScopeStream.
 #pragma once
 
 #include <atomic>
@@ -22,6 +24,7 @@
 #include "host/bindings/library/parameter_watch.hpp"
 #include "host/bindings/library/pose_feed.hpp"
 #include "host/bindings/library/pose_reports.hpp"
+#include "host/bindings/library/scene.hpp"
 #include "host/bindings/library/scope_stream.hpp"
 #include "host/bindings/library/servo.hpp"
 
@@ -88,6 +91,9 @@ class Arm {
   /// Sets the scheduling priority of the threads that read poses, send forces and call the servo.
   void set_thread_priority(int priority);
   void place_shapes(const device::Shapes& shapes);
+  /// Adds an object to the scene and returns its number. Throws BadArgument, NotNow or an error of the device.
+  std::uint32_t add_object(contact::Object object, const contact::Material& material);
+  Scene& scene() { return scene_; }
   void start_servo(Servo::Function function);
 
   void set_parameters(const std::vector<device::ParameterChange>& changes);
@@ -137,16 +143,30 @@ class Arm {
   /// Notes parameter changes of other programs in a running recording.
   void note_foreign_changes();
   void drive(const double (&force_N)[3], std::uint32_t pose_sequence);
+  /// The device has no shapes of this program, and unknown materials.
+  void forget_shapes();
+  /// Sends parameters and materials to the scene after a new claim. The caller must hold claim_mutex_.
+  void prepare_scene();
+  bool place_materials(const contact::Scene& scene);
+  /// The placed shapes with the rest of their lives.
+  device::Shapes living_shapes() const;
+  /// Passes changed parameters to the scene.
+  void follow_parameters();
+  void feel_scene(const device::Pose& report);
   void bid_farewell();
 
   PoseFeed poses_;
   PoseReports reports_;
+  Scene scene_;
   Connection connection_;
   ForceOutput force_;
   ScopeStream scope_;
 
-  std::mutex claim_mutex_;  ///< serializes claims of the arm
-  std::mutex texts_mutex_;  ///< guards the texts of recordings
+  std::mutex claim_mutex_;   ///< serializes claims of the arm
+  std::mutex shapes_mutex_;  ///< guards the shapes. The materials of the scene replace all shapes of the device.
+  device::Shapes placed_shapes_;
+  double shapes_placed_at_s_ = 0;  ///< board time
+  std::mutex texts_mutex_;         ///< guards the texts of recordings
   std::string recording_name_, recording_note_;
   std::mutex parameters_mutex_;                   ///< serializes transactions and the updates that follow them
   protocol::ParameterSet recorded_parameters_{};  ///< parameters after the last noted change

@@ -1,5 +1,5 @@
-// Functions of the C interface for devices, poses, force and shapes. The functions for parameters, signals and the
-// scope are in c_tables.cpp.
+// Functions of the C interface for devices, poses and force. The functions for parameters, signals and the scope are in
+// c_tables.cpp.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,24 +18,11 @@ namespace protocol = inkwell::protocol;
 
 namespace {
 
-std::array<float, 3> floats(const double (&values)[3]) {
-  return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
-}
-
 /// Writes the vector's values at intervals of `stride` elements.
 void put(const control::Vector3& vector, double* to, std::size_t stride) {
   to[0] = vector.x;
   to[stride] = vector.y;
   to[2 * stride] = vector.z;
-}
-
-device::Surface surface_of(const inkwell_surface& surface) {
-  return {static_cast<float>(surface.stiffness_N_per_m),
-          static_cast<float>(surface.damping_Ns_per_m),
-          static_cast<float>(surface.static_friction),
-          static_cast<float>(surface.dynamic_friction),
-          0.0f,
-          static_cast<float>(surface.life_s)};
 }
 
 constexpr double open_timeout_s = 60;
@@ -259,32 +246,6 @@ int inkwell_servo_is_running(inkwell_arm* arm) {
 
 inkwell_result inkwell_servo_result(inkwell_arm* arm) {
   return guarded([&] { arm_of(arm).servo().throw_what_ended_it(); });
-}
-
-// ---- shapes ------------------------------------------------------------------------------------------------
-
-inkwell_result inkwell_place_shapes(inkwell_arm* arm, const inkwell_plane* planes, size_t plane_count,
-                                    const inkwell_sphere* sphere) {
-  return guarded([&] {
-    if (plane_count > INKWELL_PLANES_MAXIMUM)
-      throw BadArgument(
-          fmt::format("{} planes are too many. Give the {} nearest planes.", plane_count, INKWELL_PLANES_MAXIMUM));
-    if (plane_count > 0) required(planes, "The list of planes");
-    device::Shapes shapes;
-    for (std::size_t i = 0; i < plane_count; ++i)
-      if (planes[i].surface.life_s != 0.0)
-        shapes.planes[i] =
-            device::Plane{floats(planes[i].point_m), floats(planes[i].normal), surface_of(planes[i].surface)};
-    if (sphere != nullptr && sphere->surface.life_s != 0.0)
-      shapes.sphere =
-          device::Sphere{floats(sphere->centre_m), static_cast<float>(sphere->radius_m), surface_of(sphere->surface)};
-    try {
-      device::shapes_report(shapes);
-    } catch (const device::Error& error) {
-      throw BadArgument(error.what());
-    }
-    arm_of(arm).place_shapes(shapes);
-  });
 }
 
 // ---- virtual hand ------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #include "host/bindings/library/abilities.hpp"
 #include "host/bindings/library/address.hpp"
 #include "host/bindings/library/c_guard.hpp"
+#include "host/bindings/library/growing_struct.hpp"
 
 using namespace inkwell::library;
 namespace control = inkwell::control;
@@ -27,19 +28,6 @@ static_assert(offsetof(inkwell_arm_state, quaternion) == 264 && offsetof(inkwell
 static_assert(offsetof(inkwell_abilities, force_N) == 160 && offsetof(inkwell_abilities, pose_rate_Hz) == 240);
 
 constexpr auto device_search_interval = std::chrono::milliseconds(250);
-
-/// Checks the size of a program's struct, which may belong to an older or newer library. `first_size` is the size in
-/// the first version.
-void check_size(std::size_t size, std::size_t first_size, const char* type) {
-  if (size < first_size) throw BadArgument(fmt::format("The size {} is too small. Give sizeof({}).", size, type));
-}
-
-/// Writes the members that the program's struct has. Members of newer libraries are set to 0.
-template <class Struct>
-void copy_members(const Struct& from, Struct* to, std::size_t size) {
-  std::memset(static_cast<void*>(to), 0, size);
-  std::memcpy(static_cast<void*>(to), &from, std::min(size, sizeof from));
-}
 
 control::Triple joints_of(const double (&joint_rad)[3]) {
   control::Triple joints{};

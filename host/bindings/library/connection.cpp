@@ -33,8 +33,9 @@ class CannotReturn : public Error {
 
 }  // namespace
 
-Connection::Connection(const std::string& address, PoseFeed& poses, PoseReports& reports, Clock::duration timeout)
-    : poses_(poses), reports_(reports) {
+Connection::Connection(const std::string& address, PoseFeed& poses, PoseReports& reports, Clock::duration timeout,
+                       OnReport on_report)
+    : poses_(poses), reports_(reports), on_report_(std::move(on_report)) {
   inherit_priority(geometry_mutex_);
   std::promise<void> opened;
   auto is_open = opened.get_future();
@@ -116,8 +117,10 @@ void Connection::read_poses(const OnPose& on_pose) {
   bool drove = false, has_lost_claim = false;
   while (!ends() && poses_.begin_turn()) {
     arm_.device->keep_alive();
-    const auto newest = reader.read_newest(*arm_.device, pose_timeout, geometry(),
-                                           [this](const device::Pose& report) { reports_.take(report); });
+    const auto newest = reader.read_newest(*arm_.device, pose_timeout, geometry(), [this](const device::Pose& report) {
+      reports_.take(report);
+      on_report_(report);
+    });
     const auto now = Clock::now();
     silence = newest ? Clock::duration() : silence + std::min<Clock::duration>(now - before, longest_wait);
     before = now;

@@ -21,9 +21,12 @@ namespace inkwell::library {
 
 class Connection {
  public:
+  /// Called by the thread that reads poses, before the pose is published.
+  using OnReport = std::function<void(const device::Pose&)>;
   /// Returns once poses arrive. If the arm has started a virtual board, the constructor also waits for referenced
   /// encoders. Throws TimedOut after `timeout`, and Error.
-  Connection(const std::string& address, PoseFeed& poses, PoseReports& reports, Clock::duration timeout);
+  Connection(const std::string& address, PoseFeed& poses, PoseReports& reports, Clock::duration timeout,
+             OnReport on_report);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -68,6 +71,7 @@ class Connection {
 
   PoseFeed& poses_;
   PoseReports& reports_;
+  const OnReport on_report_;
   device::OpenArm arm_;  ///< created and destroyed by the thread; constant between construction and destruction
   std::mutex control_mutex_;
   mutable std::mutex geometry_mutex_;

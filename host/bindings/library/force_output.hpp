@@ -17,7 +17,8 @@
 namespace inkwell::library {
 
 /// Sends the newest force when the device has received the previous force. In lock step the force is sent before the
-/// next pose is requested.
+/// next pose is requested. A local model needs a report of the same size, so one report contains the newest local model
+/// and the newest force.
 class ForceOutput : private TurnPart {
  public:
   /// Sends no forces while `poses` reports a loss.
@@ -28,6 +29,10 @@ class ForceOutput : private TurnPart {
   /// `pose_sequence` belongs to the pose from which the program computed the force. Throws BadArgument if the force is
   /// not finite.
   void send(const double (&force_N)[3], std::uint32_t pose_sequence);
+  /// Sends the local model for the pose with this number. If the program answers each pose with a force, the model
+  /// waits for the force. Without a new force, the report repeats the newest force for at most `force_life_s` of board
+  /// time.
+  void send_model(const device::LocalModel& model, std::uint32_t pose_sequence, double force_life_s);
   /// Fades the force out.
   void let_go();
   /// Sets the scheduling priority of the sending thread, as in set_priority().
@@ -43,7 +48,15 @@ class ForceOutput : private TurnPart {
   void send_next(std::chrono::milliseconds patience);
   /// False after stop().
   bool wait_for_force();
+  struct Model {
+    device::LocalModel model;
+    std::uint32_t pose_sequence = 0;
+    double force_life_s = 0;
+  };
+  bool has_report() const { return next_ || (model_ && model_is_due_); }
   device::ForceRequest take_force();
+  /// The newest force for the rest of its interval, or no force after its life.
+  device::ForceRequest repeated_force(const Model& model) const;
   void drop_force();
 
   device::Device& device_;
@@ -51,6 +64,9 @@ class ForceOutput : private TurnPart {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<device::ForceRequest> next_;
+  device::ForceRequest newest_{.mode = protocol::ForceMode::none};  ///< the newest force that was sent
+  std::optional<Model> model_;
+  bool model_is_due_ = false;  ///< the model does not wait for a force
   protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
   bool stops_ = false;
   ForceInterval interval_;  ///< used by the sending thread

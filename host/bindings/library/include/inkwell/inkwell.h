@@ -450,6 +450,161 @@ typedef struct inkwell_sphere {
 INKWELL_API inkwell_result inkwell_place_shapes(inkwell_arm* arm, const inkwell_plane* planes, size_t plane_count,
                                                 const inkwell_sphere* sphere);
 
+/* Kind of a solid or object. Its frame has the origin in the center. */
+typedef enum inkwell_shape INKWELL_AS_INT {
+  INKWELL_SHAPE_SPHERE = 0,    /* size: radius */
+  INKWELL_SHAPE_CAPSULE = 1,   /* size: radius, half length of the axis without the caps; along z */
+  INKWELL_SHAPE_CYLINDER = 2,  /* size: radius, half length; along z */
+  INKWELL_SHAPE_BOX = 3,       /* size: half lengths along x, y and z */
+  INKWELL_SHAPE_MESH = 4,      /* only in a scene: triangles */
+  INKWELL_SHAPE_HALF_SPACE = 5 /* only in a scene: all points with z below 0 */
+} inkwell_shape;
+
+/* Largest number of solids that the board renders. */
+#define INKWELL_SOLIDS_MAXIMUM 16
+
+/* A solid. The probe, which is a point, stays outside. A later library may append members. */
+typedef struct inkwell_solid {
+  inkwell_shape shape;
+  double centre_m[3];
+  double quaternion[4]; /* from the frame of the solid into the workspace: x, y, z, w. All 0: not turned */
+  double size_m[3];     /* see inkwell_shape */
+  inkwell_surface surface;
+  double viscosity_Ns_per_m; /* tangential force per sliding speed; the force is at most the normal force */
+} inkwell_solid;
+
+/* Shapes for inkwell_place_all_shapes(). A later library may append members. */
+typedef struct inkwell_shapes {
+  const inkwell_plane* planes; /* may be NULL if plane_count is 0 */
+  size_t plane_count;
+  const double* plane_viscosity_Ns_per_m; /* one value for each plane; NULL: 0 */
+  const inkwell_solid* solids;            /* may be NULL if solid_count is 0 */
+  size_t solid_count;
+  size_t solid_size; /* sizeof(inkwell_solid) */
+} inkwell_shapes;
+
+/* Does the same as inkwell_place_shapes(), with solids and viscosity. `size` is sizeof(inkwell_shapes). */
+INKWELL_API inkwell_result inkwell_place_all_shapes(inkwell_arm* arm, const inkwell_shapes* shapes, size_t size);
+
+/* ---- scene -------------------------------------------------------------------------------------------------- */
+
+/* A scene contains objects that the hand feels while this program drives the arm and the force is on. At each pose, the
+ * library computes a contact step in its thread and sends the surfaces near the tip to the board, which renders them at
+ * its full rate. The tip is a sphere with the radius sphere_radius_m, at least 0.5 mm. The objects act in addition to
+ * forces, shapes and walls.
+ *
+ * A function that changes the scene does not wait for the servo, and the next contact step uses the whole change. After
+ * an error the scene is unchanged. If the function changes materials, it waits for the device. A tip inside an object
+ * does not feel the object until the tip has left it. The scene lasts until the arm is closed, also without a claim. */
+
+/* Largest numbers of objects and of different materials in a scene. */
+#define INKWELL_OBJECTS_MAXIMUM 64
+#define INKWELL_MATERIALS_MAXIMUM 16
+
+/* Properties of a surface. */
+typedef struct inkwell_material {
+  double stiffness_N_per_m; /* at most 3000; 0 selects the default, 500 */
+  double damping_Ns_per_m;
+  double static_friction;    /* limit of the tangential force while the tip sticks, relative to the normal force */
+  double dynamic_friction;   /* the same while the tip slides; at most static_friction */
+  double viscosity_Ns_per_m; /* tangential force per sliding speed; the force is at most the normal force */
+} inkwell_material;
+
+/* Returns the material with this name: wood, rubber, glass, steel, stone, ice, skin, sponge or smooth. */
+INKWELL_API inkwell_result inkwell_find_material(const char* name, inkwell_material* material);
+
+/* Placement and motion of an object. The placement applies when the scene changes. From then on, the object moves with
+ * its velocities for at most 20 ms of board time, and then stops. A program that moves an object sends each frame both
+ * the placement and the velocities. */
+typedef struct inkwell_placement {
+  double position_m[3];             /* of the origin of the object's frame */
+  double quaternion[4];             /* from the frame of the object into the workspace: x, y, z, w. All 0: not turned */
+  double velocity_m_per_s[3];       /* of the origin */
+  double angular_velocity_rad_per_s[3]; /* about the origin, in workspace axes */
+} inkwell_placement;
+
+/* Type of the numbers in an array. */
+typedef enum inkwell_number INKWELL_AS_INT {
+  INKWELL_FLOAT32 = 0,
+  INKWELL_FLOAT64 = 1,
+  INKWELL_INT32 = 2,
+  INKWELL_UINT32 = 3,
+  INKWELL_INT64 = 4,
+  INKWELL_UINT64 = 5
+} inkwell_number;
+
+/* Triangles in arrays. The library copies the arrays. */
+typedef struct inkwell_mesh {
+  const void* vertices_m;     /* x, y and z of each vertex, at most 10 m from the origin */
+  inkwell_number vertex_type; /* INKWELL_FLOAT32 or INKWELL_FLOAT64 */
+  size_t vertex_count;
+  const void* triangles;        /* indices of the corners of each triangle, counter-clockwise as seen from outside */
+  inkwell_number triangle_type; /* one of the integer types */
+  size_t triangle_count;
+} inkwell_mesh;
+
+/* An object. Members that are not used may be 0. A later library may append members. */
+typedef struct inkwell_object {
+  inkwell_shape shape;
+  double size_m[3];  /* see inkwell_shape; not used by a mesh and a half-space */
+  inkwell_mesh mesh; /* only of a mesh */
+  inkwell_placement placement;
+  inkwell_material material;
+  int is_smooth; /* 1: normals of a mesh are interpolated, which hides facets. A smoothed surface can supply energy */
+} inkwell_object;
+
+/* Adds an object and writes its number, which is never 0 and not used again. `size` is sizeof(inkwell_object). The calling
+ * thread prepares a mesh: about 1 s for a million triangles. Duplicate triangles and triangles without area are
+ * ignored, and a mesh that is inside out is turned. An open mesh is a surface with two sides. */
+INKWELL_API inkwell_result inkwell_scene_add(inkwell_arm* arm, const inkwell_object* object, size_t size,
+                                             uint32_t* number);
+/* Moves an object. An object that moves pushes the tip. */
+INKWELL_API inkwell_result inkwell_scene_move(inkwell_arm* arm, uint32_t number, const inkwell_placement* placement);
+INKWELL_API inkwell_result inkwell_scene_set_material(inkwell_arm* arm, uint32_t number,
+                                                      const inkwell_material* material);
+INKWELL_API inkwell_result inkwell_scene_remove(inkwell_arm* arm, uint32_t number);
+/* Removes all objects. */
+INKWELL_API inkwell_result inkwell_scene_clear(inkwell_arm* arm);
+
+/* A part of an object that the tip touches. A later library may append members. */
+typedef struct inkwell_contact {
+  uint32_t object;   /* number of the object */
+  uint32_t triangle; /* index in inkwell_mesh::triangles; 0 for other shapes */
+  double point_m[3]; /* on the surface, in the workspace */
+  double normal[3];  /* unit vector from the surface to the tip */
+  double depth_m;    /* of the hand below the surface, along the normal */
+  double time_s;     /* board time */
+} inkwell_contact;
+
+/* Largest number of contacts at a time. */
+#define INKWELL_CONTACTS_MAXIMUM 3
+
+/* Writes at most `capacity` present contacts, and their total number to `count`. `size` is sizeof(inkwell_contact). */
+INKWELL_API inkwell_result inkwell_scene_get_contacts(inkwell_arm* arm, inkwell_contact* contacts, size_t size,
+                                                      size_t capacity, size_t* count);
+
+/* Kind of an event. */
+typedef enum inkwell_event_kind INKWELL_AS_INT {
+  INKWELL_TOUCHED = 0, /* the tip touches an object */
+  INKWELL_LEFT = 1,    /* the tip has not touched the object for 5 ms */
+  INKWELL_PRESSED = 2, /* of a button */
+  INKWELL_RELEASED = 3 /* of a button */
+} inkwell_event_kind;
+
+/* An event of the scene. A later library may append members. */
+typedef struct inkwell_event {
+  inkwell_event_kind kind;
+  int button;              /* 1 or 2 for INKWELL_PRESSED and INKWELL_RELEASED, otherwise 0 */
+  double time_s;           /* board time */
+  inkwell_contact contact; /* the first of a touch, otherwise the last. `object` is 0 if the tip touches no object */
+} inkwell_event;
+
+/* Writes the oldest events, at most `capacity`, and their number to `count`, without waiting. `size` is
+ * sizeof(inkwell_event). Events occur while the scene is felt. The library stores 1024 events. `lost`, which may be NULL,
+ * becomes the number of events that were lost since the last call. */
+INKWELL_API inkwell_result inkwell_scene_read_events(inkwell_arm* arm, inkwell_event* events, size_t size,
+                                                     size_t capacity, size_t* count, uint64_t* lost);
+
 /* ---- parameters --------------------------------------------------------------------------------------------- */
 
 /* A row of the parameter table. */

@@ -17,6 +17,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,12 @@ using Plane = inkwell_plane;
 using Sphere = inkwell_sphere;
 using State = inkwell_arm_state;
 using Abilities = inkwell_abilities;
+using Solid = inkwell_solid;
+using Material = inkwell_material;
+using Placement = inkwell_placement;
+using Object = inkwell_object;
+using Contact = inkwell_contact;
+using Event = inkwell_event;
 using Vector = std::array<double, 3>;  ///< in the workspace axes, or one value for each joint
 
 /// Thrown if a library function does not return INKWELL_OK. The function what() returns the error text.
@@ -113,6 +120,43 @@ struct Kinematics {
   Vector position_m{};
   std::array<double, 9> jacobian{};  ///< in m/rad, row by row
 };
+
+/// See inkwell_find_material().
+inline Material find_material(const std::string& name) {
+  Material material{};
+  require(inkwell_find_material(name.c_str(), &material));
+  return material;
+}
+
+/// Codes of inkwell_number for the numbers of C++.
+template <class Number>
+constexpr inkwell_number number_type() {
+  static_assert(std::is_floating_point<Number>::value ? sizeof(Number) <= 8
+                                                      : std::is_integral<Number>::value && sizeof(Number) >= 4,
+                "The library accepts float, double and integers of 32 and 64 bits.");
+  return std::is_floating_point<Number>::value ? (sizeof(Number) == 4 ? INKWELL_FLOAT32 : INKWELL_FLOAT64)
+         : std::is_signed<Number>::value       ? (sizeof(Number) == 4 ? INKWELL_INT32 : INKWELL_INT64)
+         : sizeof(Number) == 4                 ? INKWELL_UINT32
+                                               : INKWELL_UINT64;
+}
+
+/// Sphere, capsule, cylinder, box or half-space at the origin; see inkwell_shape.
+inline Object make_object(inkwell_shape shape, const Vector& size_m = {}) {
+  Object object{};
+  object.shape = shape;
+  std::copy(size_m.begin(), size_m.end(), object.size_m);
+  return object;
+}
+
+/// Mesh for Arm::scene_add(). The arrays must exist until then.
+template <class Number, class Index>
+Object make_mesh(const std::vector<std::array<Number, 3>>& vertices_m,
+                 const std::vector<std::array<Index, 3>>& triangles) {
+  Object object = make_object(INKWELL_SHAPE_MESH);
+  object.mesh = {vertices_m.data(), number_type<Number>(), vertices_m.size(),
+                 triangles.data(),  number_type<Index>(),  triangles.size()};
+  return object;
+}
 
 /// An open arm. The destructor closes the arm. Each function calls the C function of the same name. Each C++ function
 /// throws Failure if its C function does not return INKWELL_OK, and Disconnected while no poses arrive. Moving an Arm
@@ -205,6 +249,47 @@ class Arm {
   void set_force(const Vector& force_N) { require(inkwell_set_force(get(), force_N.data())); }
   void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere = nullptr) {
     require(inkwell_place_shapes(get(), planes.data(), planes.size(), sphere));
+  }
+  void place_all_shapes(const std::vector<Plane>& planes, const std::vector<Solid>& solids,
+                        const std::vector<double>& plane_viscosity_Ns_per_m = {}) {
+    std::vector<double> viscosities = plane_viscosity_Ns_per_m;
+    viscosities.resize(planes.size());
+    const inkwell_shapes shapes{planes.data(), planes.size(), viscosities.data(),
+                                solids.data(), solids.size(), sizeof(Solid)};
+    require(inkwell_place_all_shapes(get(), &shapes, sizeof shapes));
+  }
+
+  // ---- scene ----
+  /// Returns the number of the object.
+  std::uint32_t scene_add(const Object& object) {
+    std::uint32_t number = 0;
+    require(inkwell_scene_add(get(), &object, sizeof object, &number));
+    return number;
+  }
+  void scene_move(std::uint32_t number, const Placement& placement) {
+    require(inkwell_scene_move(get(), number, &placement));
+  }
+  void scene_set_material(std::uint32_t number, const Material& material) {
+    require(inkwell_scene_set_material(get(), number, &material));
+  }
+  void scene_remove(std::uint32_t number) { require(inkwell_scene_remove(get(), number)); }
+  void scene_clear() { require(inkwell_scene_clear(get())); }
+  std::vector<Contact> scene_contacts() const {
+    std::vector<Contact> contacts(INKWELL_CONTACTS_MAXIMUM);
+    std::size_t count = 0;
+    require(inkwell_scene_get_contacts(get(), contacts.data(), sizeof(Contact), contacts.size(), &count));
+    contacts.resize(std::min(count, contacts.size()));
+    return contacts;
+  }
+  /// Returns at most `capacity` events. Adds the number of lost events to `lost`, which may be null.
+  std::vector<Event> scene_read_events(std::size_t capacity = 1024, std::uint64_t* lost = nullptr) {
+    std::vector<Event> events(capacity);
+    std::size_t count = 0;
+    std::uint64_t now_lost = 0;
+    require(inkwell_scene_read_events(get(), events.data(), sizeof(Event), events.size(), &count, &now_lost));
+    if (lost != nullptr) *lost += now_lost;
+    events.resize(count);
+    return events;
   }
 
   void start_servo(Servo servo) {
