@@ -85,7 +85,7 @@ class Driving(unittest.TestCase):
             text = file.read_text()
         self.assertIn("# name = subject 7\n# note = left hand\n", text)
         self.assertRegex(text, r"# mark [0-9]+ mark [-0-9]+T[0-9:]+\.[0-9]{6}Z = stimulus\n")
-        self.assertRegex(text, r"# mark [0-9]+ shape .* = Sphere: center \(0, 0, 0.05\) m, radius 0.01 m")
+        self.assertRegex(text, r"# mark [0-9]+ shape .* = Solid 1: sphere, center \(0, 0, 0.05\) m")
 
     def test_a_test_pulse_is_recorded(self):
         wait_until(self.arm, lambda pose: pose.state == inkwell.State.READY)
@@ -218,7 +218,10 @@ class Driving(unittest.TestCase):
         for wrong, words in (([inkwell.Plane(FREE_POINT_M, (0, 0, 0))], "normal of plane 0"),
                              ([inkwell.Plane((math.nan, 0, 0), (0, 0, 1))], "plane 0"),
                              ([inkwell.Plane(FREE_POINT_M, (0, 0, 1))] * 9, "9 planes are too many"),
-                             ([inkwell.Sphere(FREE_POINT_M, 0.01)] * 2, "2 spheres are too many")):
+                             ([inkwell.Sphere(FREE_POINT_M, 0.01)] * 17, "17 solids are too many"),
+                             ([inkwell.Box(FREE_POINT_M, (0.01, 0.01, 0))], "solid 0 \\(box\\)"),
+                             ([inkwell.Capsule(FREE_POINT_M, 0.01, 0.02, quaternion=(0, 0, 0, math.nan))], "orientation"),
+                             ([inkwell.Cylinder(FREE_POINT_M, 0.01, 0.02, viscosity_Ns_per_m=-1)], "viscosity")):
             with self.assertRaisesRegex(inkwell.BadArgument, words):
                 self.arm.place_shapes(*wrong)
         with self.assertRaises(TypeError):
@@ -229,6 +232,12 @@ class Driving(unittest.TestCase):
         self.assertTrue(self.arm.wait_for_pose(10).feels_shapes)
         self.arm.place_shapes()
         wait_until(self.arm, lambda pose: not pose.feels_shapes)
+        self.arm.virtual_hand.move(FREE_POINT_M)
+        self.arm.sleep(0.3)
+        turned = (math.sqrt(0.5), 0, 0, math.sqrt(0.5))  # the axis z of the capsule along y
+        self.arm.place_shapes(inkwell.Capsule((0, 0, -0.05), 0.015, 0.02, quaternion=turned, viscosity_Ns_per_m=1))
+        self.arm.virtual_hand.move((0, 0, -0.039))
+        wait_until(self.arm, lambda pose: abs(pose.force_N[2] - 0.87) < 0.12 and pose.feels_shapes)
 
     def test_other_threads_run_while_one_waits_and_closing_ends_the_wait(self):
         raised = []

@@ -46,7 +46,7 @@ def running(name: str, *arguments: str) -> Iterator[subprocess.Popen]:
                                stderr=subprocess.PIPE, text=True, env=environment(name))
     try:
         said = program.stdout.readline()
-        assert said in ("Press Enter to end.\n", "Move the stylus.\n"), said + program.stderr.read()
+        assert said in ("Press Enter to end.\n", "Press button 1 of the stylus to end.\n", "Move the stylus.\n"), said + program.stderr.read()
         yield program
         output, errors = program.communicate("\n")
     except BaseException:
@@ -126,6 +126,32 @@ class Examples(unittest.TestCase):
             self.assertGreater(radius_m, 0.0172)
         board.wait_until(rests_at_x(0.015))
 
+    @in_each_language("mesh.cpp", "mesh.py")
+    def test_mesh(self, name, board):
+        board.take_to(beside(0.032), 600)
+        with running(name, board.address) as program:
+            board.let_pass(0.5)
+            board.hold(beside(0.02), 600)
+            # Two springs of 1000 and 600 N/m have rest positions 5 mm apart: the tip has a radius of 5 mm.
+            board.wait_until(rests_at_x(0.0231, 0.0008))
+            program.stdin.write("\n")
+            program.stdin.flush()
+            self.assertRegex(program.stdout.readline(), r"^\d+\.\d{3} s: touched triangle \d+\n$")
+        board.wait_until(rests_at_x(0.02))
+
+    @in_each_language("moving_ball.c", "moving_ball.py")
+    def test_moving_ball(self, name, board):
+        board.take_to(beside(0.025))
+        with running(name, board.address) as program:
+            # The tip touches the ball 20 mm from the center of the ball, which moves by 20 mm to both sides.
+            for _ in range(2):
+                board.wait_until(lambda now: now["true_position_x_m"] > 0.03)
+                board.wait_until(lambda now: now["true_position_x_m"] < 0.026)
+            if name.endswith(".c"):
+                board.call("buttons", pressed=[True, False])
+                program.wait(60)
+                board.call("buttons", pressed=[False, False])
+
     @in_each_language("two_arms.cpp", "two_arms.py")
     def test_two_arms(self, name, board):
         with VirtualBoard(BUILD, seed=2) as other:
@@ -176,7 +202,7 @@ class Examples(unittest.TestCase):
 
     def test_each_is_short(self):
         sources = [*HOST.glob("library/examples/*.c*"), *HOST.glob("python/examples/*.py")]
-        self.assertGreaterEqual(len(sources), 11)
+        self.assertGreaterEqual(len(sources), 15)
         for source in sources:
             is_class_of_framework = source.name == "ros2_control_system.cpp"
             self.assertLess(len(source.read_text().splitlines()), 150 if is_class_of_framework else 60, source)

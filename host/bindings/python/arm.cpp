@@ -200,9 +200,9 @@ void Arm::set_force(const std::array<double, 3>& force_N) {
   call([&] { return inkwell_set_force(arm, force_N.data()); });
 }
 
-void Arm::place_shapes(const std::vector<Plane>& planes, const Sphere* sphere) {
+void Arm::place_shapes(const inkwell_shapes& shapes) {
   const Use arm(*this);
-  call([&] { return inkwell_place_shapes(arm, planes.data(), planes.size(), sphere); });
+  call([&] { return inkwell_place_all_shapes(arm, &shapes, sizeof shapes); });
 }
 
 // ---- the servo ---------------------------------------------------------------------------------------------

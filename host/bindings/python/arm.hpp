@@ -55,7 +55,13 @@ class Arm {
   void clear_fault();
   void set_force_mode(inkwell_force_mode mode);
   void set_force(const std::array<double, 3>& force_N);
-  void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere);
+  void place_shapes(const inkwell_shapes& shapes);
+  /// Calls a function of the library with the arm.
+  template <class Call>
+  void use(Call library_call) {
+    const Use arm(*this);
+    call([&] { return library_call(arm); });
+  }
 
   void start_servo(py::function servo);
   /// Raises the servo's exception, or another error that has ended the servo.

@@ -8,29 +8,12 @@
 #include <pybind11/stl.h>
 
 #include "host/bindings/python/arm.hpp"
+#include "host/bindings/python/record.hpp"
+#include "host/bindings/python/scene.hpp"
 #include "host/bindings/python/value.hpp"
 
 namespace inkwell::python {
 namespace {
-
-/// Returns a read-only numpy array that refers to a struct member. The array keeps a reference to the struct.
-template <class Struct, std::size_t size>
-py::cpp_function array_of(double (Struct::*member)[size], std::vector<py::ssize_t> shape = {size}) {
-  return [member, shape](const py::object& self) {
-    py::array_t<double> array(shape, self.cast<const Struct&>().*member, self);
-    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-    return array;
-  };
-}
-
-template <class Struct, std::size_t size>
-py::cpp_function text_of(char (Struct::*member)[size]) {
-  return [member](const Struct& self) { return std::string(self.*member); };
-}
-template <class Struct>
-py::cpp_function flag_of(int Struct::*member) {
-  return [member](const Struct& self) { return self.*member != 0; };
-}
 
 template <inkwell_force_source source>
 bool feels(const inkwell_pose& pose) {
@@ -42,50 +25,10 @@ bool is_limited(const inkwell_pose& pose) {
   return (pose.limits & limit) != 0;
 }
 
-/// Describes a record by these attributes.
-std::string describe_attributes(const py::object& self, const std::vector<const char*>& attributes) {
-  std::string text = "<inkwell." + std::string(py::str(py::type::of(self).attr("__name__")));
-  for (const char* separator = " "; const char* name : attributes) {
-    text += separator + std::string(name) + "=" + std::string(py::repr(self.attr(name)));
-    separator = ", ";
-  }
-  return text + ">";
-}
-
 std::string describe(const inkwell_pose& pose) {
   return py::str("<inkwell.Pose {:.3f} s, {}: probe at {:.4f} {:.4f} {:.4f} m>")
       .format(pose.time_s, py::cast(pose.state).attr("name"), pose.position_m[0], pose.position_m[1],
               pose.position_m[2]);
-}
-
-inkwell_surface surface_of(const py::handle& shape) {
-  return {shape.attr("stiffness_N_per_m").cast<double>(), shape.attr("damping_Ns_per_m").cast<double>(),
-          shape.attr("static_friction").cast<double>(), shape.attr("dynamic_friction").cast<double>(),
-          shape.attr("life_s").cast<double>()};
-}
-
-void put(const py::handle& vector, double (&to)[3]) {
-  const auto values = vector.cast<Vector>();
-  for (std::size_t i = 0; i < 3; ++i) to[i] = values[i];
-}
-
-/// Places Python shape objects from inkwell/shapes.py.
-void place_shapes(Arm& arm, const py::list& planes, const py::object& sphere) {
-  std::vector<Plane> flat;
-  for (const auto& plane : planes) {
-    Plane next{};
-    put(plane.attr("point_m"), next.point_m);
-    put(plane.attr("normal"), next.normal);
-    next.surface = surface_of(plane);
-    flat.push_back(next);
-  }
-  Sphere round{};
-  if (!sphere.is_none()) {
-    put(sphere.attr("centre_m"), round.centre_m);
-    round.radius_m = sphere.attr("radius_m").cast<double>();
-    round.surface = surface_of(sphere);
-  }
-  arm.place_shapes(flat, sphere.is_none() ? nullptr : &round);
 }
 
 std::vector<inkwell_device> list_devices() {
@@ -442,6 +385,13 @@ void define_arm(py::module_& module) {
       .def("set_force_mode", &Arm::set_force_mode)
       .def("set_force", &Arm::set_force)
       .def("place_shapes", &place_shapes)
+      .def("scene_add", &scene_add)
+      .def("scene_move", &scene_move)
+      .def("scene_set_material", &scene_set_material)
+      .def("scene_remove", &scene_remove)
+      .def("scene_clear", &scene_clear)
+      .def("scene_contacts", &scene_contacts)
+      .def("scene_events", &scene_events)
       .def("start_servo", &Arm::start_servo)
       .def("stop_servo", &Arm::stop_servo)
       .def("servo_is_running", &Arm::servo_is_running)
@@ -486,6 +436,7 @@ PYBIND11_MODULE(_native, module) {
   inkwell::python::define_self_test(module);
   inkwell::python::define_driver(module);
   inkwell::python::define_losses(module);
+  inkwell::python::define_scene(module);
   inkwell::python::define_arm(module);
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,

@@ -18,8 +18,8 @@ from . import _requirements
 
 _requirements.check()
 
-from ._native import (Abilities, ArmState, Device, Driver, ForceMode, Information, Losses, Pose, State, Store, Stored, Test, TestItem,
-                      devices, names)
+from ._native import (Abilities, ArmState, Contact, Device, Driver, Event, EventKind, ForceMode, Information, Losses, Pose,
+                      State, Store, Stored, Test, TestItem, devices, names)
 from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open
 from .device_list import wait_for_devices
@@ -28,15 +28,17 @@ from .errors import (BadArgument, Disconnected, Error, Failed, ForceLost, Incomp
 from .faults import Fault
 from .parameters import Parameter, Parameters
 from .parameters import TABLE as _parameters
+from .scene import Material, Scene, SceneObject
 from .scope import Samples, Signal
 from .scope import TABLE as _signals
-from .shapes import Plane, Sphere, Surface
+from .shapes import Box, Capsule, Cylinder, Plane, Solid, Sphere, Surface
 
 __version__ = _version()
 __all__ = [
-    "Abilities", "Arm", "ArmState", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceLost", "ForceMode", "InUse",
-    "Incompatible", "Information", "Losses", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
-    "Refused", "Samples", "Signal", "Sphere", "State", "Store", "Stored", "Surface", "Test", "TestItem", "TimedOut",
+    "Abilities", "Arm", "ArmState", "BadArgument", "Box", "Capsule", "Contact", "Cylinder", "Device", "Disconnected", "Driver",
+    "Error", "Event", "EventKind", "Failed", "Fault", "ForceLost", "ForceMode", "InUse", "Incompatible", "Information", "Losses",
+    "Material", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording", "Refused", "Samples", "Scene",
+    "SceneObject", "Signal", "Solid", "Sphere", "State", "Store", "Stored", "Surface", "Test", "TestItem", "TimedOut",
     "VirtualHand", "devices", "names", "open", "parameters_table", "signals", "wait_for_devices",
 ]
 

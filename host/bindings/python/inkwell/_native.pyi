@@ -2,11 +2,12 @@
 
 import enum
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .shapes import Plane, Sphere
+from .shapes import Plane, Solid
 
 _Vector = Sequence[float] | npt.NDArray[np.floating]
 _Array = npt.NDArray[np.float64]
@@ -23,6 +24,29 @@ class ForceMode(enum.Enum):
     """Effect of a program's forces on the board's walls."""
     BESIDE_WALLS = 1
     INSTEAD_OF_WALLS = 2
+
+class EventKind(enum.Enum):
+    """Kind of an event of a scene."""
+    TOUCHED = 0
+    LEFT = 1
+    PRESSED = 2
+    RELEASED = 3
+
+class Contact:
+    """A part of an object that the tip touches."""
+    object: int
+    triangle: int
+    point_m: _Array
+    normal: _Array
+    depth_m: float
+    time_s: float
+
+class Event:
+    """A touch, or a change of a button."""
+    kind: EventKind
+    button: int
+    time_s: float
+    contact: Contact
 
 class Pose:
     """Position and state of the stylus, once per millisecond. The arrays are read-only."""
@@ -263,7 +287,16 @@ class Arm:
     def clear_fault(self) -> None: ...
     def set_force_mode(self, mode: ForceMode) -> None: ...
     def set_force(self, force_N: _Vector) -> None: ...
-    def place_shapes(self, planes: list[Plane], sphere: Sphere | None) -> None: ...
+    def place_shapes(self, planes: list[Plane], solids: list[Solid]) -> None: ...
+    def scene_add(self, shape: int, size_m: _Vector, vertices: npt.NDArray[Any] | None,
+                  triangles: npt.NDArray[Any] | None, placement: tuple[_Vector, _Vector, _Vector, _Vector],
+                  material: Sequence[float], is_smooth: bool) -> int: ...
+    def scene_move(self, number: int, placement: tuple[_Vector, _Vector, _Vector, _Vector]) -> None: ...
+    def scene_set_material(self, number: int, material: Sequence[float]) -> None: ...
+    def scene_remove(self, number: int) -> None: ...
+    def scene_clear(self) -> None: ...
+    def scene_contacts(self) -> list[Contact]: ...
+    def scene_events(self) -> tuple[list[Event], int]: ...
     def start_servo(self, servo: Callable[[Pose], _Vector | None]) -> None: ...
     def stop_servo(self) -> None: ...
     def servo_is_running(self) -> bool: ...
@@ -295,6 +328,7 @@ class Arm:
     def send_test_pulse(self, motor: int, unit: str, amplitude: float, duration_s: float) -> None: ...
 
 def version() -> str: ...
+def find_material(name: str) -> list[float]: ...
 def devices() -> list[Device]:
     """Lists the arms that can be opened."""
 def names() -> dict[str, str]:

@@ -19,8 +19,9 @@ import numpy.typing as npt
 from . import _native, errors
 from ._native import Abilities, ArmState, Driver, ForceMode, Information, Losses, Pose, TestItem
 from .parameters import Parameters
+from .scene import Scene
 from .scope import Samples
-from .shapes import Plane, Sphere
+from .shapes import Plane, Solid
 
 Vector = Sequence[float] | npt.NDArray[np.floating]
 """Three numbers along the workspace axes."""
@@ -125,6 +126,7 @@ class Arm:
         self._reported_call_s = _SLOW_CALL_S
         self._process_id = os.getpid()
         self.parameters = Parameters(self._native)
+        self.scene = Scene(self._native)
         self.virtual_hand = VirtualHand(self._native)
         _open.add(self)
 
@@ -369,20 +371,18 @@ class Arm:
         self.stop_servo()
         return True
 
-    def place_shapes(self, *shapes: Plane | Sphere) -> None:
-        """Replaces all shapes by up to eight planes and one sphere, in one control period and without a jump of the force.
-        Without arguments it removes all shapes."""
-        spheres = [shape for shape in shapes if isinstance(shape, Sphere)]
+    def place_shapes(self, *shapes: Plane | Solid) -> None:
+        """Replaces all shapes by up to eight planes and sixteen solids (Sphere, Capsule, Cylinder, Box), in one control
+        period and without a jump of the force. Without arguments it removes all shapes."""
         planes = [shape for shape in shapes if isinstance(shape, Plane)]
-        if len(spheres) + len(planes) < len(shapes):
-            raise TypeError("A shape has a wrong type. Give an inkwell.Plane or an inkwell.Sphere.")
-        if len(spheres) > 1:
-            raise errors.BadArgument(f"{len(spheres)} spheres are too many. Give the nearest sphere.")
+        solids = [shape for shape in shapes if isinstance(shape, Solid)]
+        if len(planes) + len(solids) < len(shapes):
+            raise TypeError("A shape has a wrong type. Give an inkwell.Plane, Sphere, Capsule, Cylinder or Box.")
         try:
-            self._native.place_shapes(planes, spheres[0] if spheres else None)
+            self._native.place_shapes(planes, solids)
         except RuntimeError:  # a value cannot be converted
             raise TypeError("A value of a shape has a wrong type. Give three numbers for a point, a normal or a center, "
-                            "and one number for each other value.") from None
+                            "four for a quaternion, and one number for each other value.") from None
 
     # ---- scope, recording ----------------------------------------------------------------------------------
 
