@@ -99,11 +99,16 @@ class Records(unittest.TestCase):
             cls.records = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver, arm.losses,
                            arm.state, arm.abilities, *arm.self_test()]
             cls.later = [arm.wait_for_pose(), arm.information, arm.parameters.store_state(), arm.driver]
+            arm.scene.add_sphere(0.01, position_m=(0, 0, 1))
+            arm.virtual_hand.press(button_1=True)
+            arm.sleep(0.05)
+            event, = arm.scene.events()
+            cls.records += [event, event.contact]
             cls.samples = arm.capture("supply_V", duration_s=0.01)
         with mock.patch.dict(os.environ, INKWELL_DEVICE="virtual"):
             cls.records.append(inkwell.devices()[-1])
         cls.enumerations = [inkwell.State.READY, inkwell.ForceMode.BESIDE_WALLS, inkwell.Stored.NOTHING,
-                            inkwell.Test.PASSED]
+                            inkwell.Test.PASSED, inkwell.EventKind.LEFT]
 
     @staticmethod
     def attributes(record):

@@ -3,11 +3,15 @@
 // Build commands:
 //   mkoctfile --mex inkwell_mex.cpp -Ihost/bindings/library/include -Lbuild/pc -linkwell     Octave
 //   mex inkwell_mex.cpp -Ihost/bindings/library/include -Lbuild/pc -linkwell                 MATLAB
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -356,6 +360,169 @@ Answers force(const Arguments& arguments) {
   return {};
 }
 
+// ---- scene ----
+
+/// Material from a name, or from a structure with its properties.
+inkwell::Material material_of(const mxArray* value) {
+  if (mxIsChar(value)) return inkwell::find_material(text(value));
+  if (!mxIsStruct(value)) throw Wrong("A material is not valid. Give the name of a material, or a structure.");
+  inkwell::Material material{};
+  const std::pair<const char*, double*> fields[] = {{"stiffness_N_per_m", &material.stiffness_N_per_m},
+                                                    {"damping_Ns_per_m", &material.damping_Ns_per_m},
+                                                    {"static_friction", &material.static_friction},
+                                                    {"dynamic_friction", &material.dynamic_friction},
+                                                    {"viscosity_Ns_per_m", &material.viscosity_Ns_per_m}};
+  for (int i = 0; i < mxGetNumberOfFields(value); ++i) {
+    const std::string name = mxGetFieldNameByNumber(value, i);
+    double* property = nullptr;
+    for (const auto& field : fields)
+      if (name == field.first) property = field.second;
+    if (property == nullptr) throw Wrong("A material has no property " + name + ". Read help inkwell_scene_add.");
+    *property = number(mxGetFieldByNumber(value, 0, i));
+  }
+  return material;
+}
+
+void put(const mxArray* value, std::size_t count, const char* what, double* to) {
+  const auto values = numbers(value);
+  if (values.size() != count)
+    throw Wrong(std::string("The ") + what + " is not valid. Give " + std::to_string(count) + " numbers.");
+  std::copy(values.begin(), values.end(), to);
+}
+
+/// Position, quaternion, velocity and angular velocity from the arguments from `first` on. Missing ones are 0.
+inkwell::Placement placement_of(const Arguments& arguments, std::size_t first) {
+  inkwell::Placement placement{};
+  struct Part {
+    const char* name;
+    std::size_t count;
+    double* to;
+  };
+  const Part parts[] = {{"position", 3, placement.position_m},
+                        {"quaternion", 4, placement.quaternion},
+                        {"velocity", 3, placement.velocity_m_per_s},
+                        {"angular velocity", 3, placement.angular_velocity_rad_per_s}};
+  for (std::size_t i = 0; i < std::size(parts) && first + i < arguments.size(); ++i)
+    if (!mxIsEmpty(arguments[first + i])) put(arguments[first + i], parts[i].count, parts[i].name, parts[i].to);
+  return placement;
+}
+
+/// Rows of a matrix with three columns.
+template <class Number>
+std::vector<std::array<Number, 3>> rows_of_three(const mxArray* value, const char* what, double offset) {
+  const auto values = numbers(value);  // column by column
+  if (mxGetN(value) != 3) throw Wrong(std::string("The ") + what + " are not valid. Give a matrix with three columns.");
+  const std::size_t count = values.size() / 3;
+  std::vector<std::array<Number, 3>> rows(count);
+  for (std::size_t row = 0; row < count; ++row)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double entry = values[i * count + row] + offset;
+      if (std::is_integral<Number>::value && !(entry >= 0 && entry < 4e9 && entry == std::floor(entry)))
+        throw Wrong(std::string("An entry of the ") + what + " is not the row of a vertex. Count the rows from 1.");
+      rows[row][i] = static_cast<Number>(entry);
+    }
+  return rows;
+}
+
+/// Arm, shape or vertices, sizes or faces, material or [], placement.
+Answers scene_add(const Arguments& arguments) {
+  inkwell_arm* const arm = find(arguments)->second;
+  std::vector<std::array<double, 3>> vertices_m;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  inkwell::Object object{};
+  if (mxIsChar(argument(arguments, 1))) {
+    static const std::pair<const char*, std::size_t> shapes[] = {{"sphere", 1}, {"capsule", 2}, {"cylinder", 2},
+                                                                 {"box", 3},    {"", 0},        {"half-space", 0}};
+    const std::string name = text(arguments[1]);
+    std::size_t shape = 0;
+    while (shape < std::size(shapes) && (name != shapes[shape].first || name.empty())) ++shape;
+    if (shape == std::size(shapes))
+      throw Wrong("There is no shape " + name + ". Give sphere, capsule, cylinder, box or half-space.");
+    object.shape = static_cast<inkwell_shape>(shape);
+    put(argument(arguments, 2), shapes[shape].second, "size", object.size_m);
+  } else {
+    vertices_m = rows_of_three<double>(arguments[1], "vertices", 0);
+    faces = rows_of_three<std::uint32_t>(argument(arguments, 2), "faces", -1);
+    object = inkwell::make_mesh(vertices_m, faces);
+  }
+  if (!mxIsEmpty(argument(arguments, 3))) object.material = material_of(arguments[3]);
+  object.placement = placement_of(arguments, 4);
+  std::uint32_t number_of_object = 0;
+  require(inkwell_scene_add(arm, &object, sizeof object, &number_of_object));
+  return {mxCreateDoubleScalar(number_of_object)};
+}
+
+std::uint32_t object_of(const Arguments& arguments) {
+  const double wanted = number(argument(arguments, 1));
+  return wanted >= 0 && wanted < 4e9 ? static_cast<std::uint32_t>(wanted) : 0;
+}
+
+Answers scene_move(const Arguments& arguments) {
+  const auto placement = placement_of(arguments, 2);
+  require(inkwell_scene_move(find(arguments)->second, object_of(arguments), &placement));
+  return {};
+}
+
+Answers scene_material(const Arguments& arguments) {
+  const auto material = material_of(argument(arguments, 2));
+  require(inkwell_scene_set_material(find(arguments)->second, object_of(arguments), &material));
+  return {};
+}
+
+/// Without an object, removes all objects.
+Answers scene_remove(const Arguments& arguments) {
+  inkwell_arm* const arm = find(arguments)->second;
+  require(arguments.size() > 1 ? inkwell_scene_remove(arm, object_of(arguments)) : inkwell_scene_clear(arm));
+  return {};
+}
+
+std::vector<std::pair<const char*, mxArray*>> fields_of(const inkwell_contact& contact) {
+  return {{"object", mxCreateDoubleScalar(contact.object)},
+          {"triangle", mxCreateDoubleScalar(contact.triangle + 1.0)},
+          {"point_m", column(contact.point_m, 3)},
+          {"normal", column(contact.normal, 3)},
+          {"depth_m", mxCreateDoubleScalar(contact.depth_m)},
+          {"time_s", mxCreateDoubleScalar(contact.time_s)}};
+}
+
+/// Structure array with these fields and the rows of the result of `fields_of_row`.
+template <class Rows, class Fields>
+mxArray* table_of(std::vector<const char*> names, const Rows& rows, Fields fields_of_row) {
+  mxArray* table =
+      mxCreateStructMatrix(static_cast<mwSize>(rows.size()), 1, static_cast<int>(names.size()), names.data());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const auto& [name, value] : fields_of_row(rows[i])) mxSetField(table, static_cast<mwIndex>(i), name, value);
+  return table;
+}
+
+Answers scene_contacts(const Arguments& arguments) {
+  std::vector<inkwell_contact> contacts(INKWELL_CONTACTS_MAXIMUM);
+  std::size_t count = 0;
+  require(inkwell_scene_get_contacts(find(arguments)->second, contacts.data(), sizeof(inkwell_contact),
+                                     contacts.size(), &count));
+  contacts.resize(std::min(count, contacts.size()));
+  return {table_of({"object", "triangle", "point_m", "normal", "depth_m", "time_s"}, contacts, fields_of)};
+}
+
+Answers scene_events(const Arguments& arguments) {
+  std::vector<inkwell_event> events(1024);
+  std::size_t count = 0;
+  std::uint64_t lost = 0;
+  require(inkwell_scene_read_events(find(arguments)->second, events.data(), sizeof(inkwell_event), events.size(),
+                                    &count, &lost));
+  events.resize(count);
+  static const char* const kinds[] = {"touched", "left", "pressed", "released"};
+  const auto fields = [](const inkwell_event& event) {
+    return std::vector<std::pair<const char*, mxArray*>>{
+        {"kind", mxCreateString(event.kind >= 0 && event.kind < 4 ? kinds[event.kind] : "unknown")},
+        {"button", mxCreateDoubleScalar(event.button)},
+        {"time_s", mxCreateDoubleScalar(event.time_s)},
+        {"contact", struct_of(fields_of(event.contact))}};
+  };
+  return {table_of({"kind", "button", "time_s", "contact"}, events, fields),
+          mxCreateDoubleScalar(static_cast<double>(lost))};
+}
+
 Answers get(const Arguments& arguments) {
   double value = 0;
   require(inkwell_get_parameter(find(arguments)->second, text(argument(arguments, 1)).c_str(), &value));
@@ -589,6 +756,12 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"driver", driver},
     {"clear_fault", clear_fault},
     {"force", force},
+    {"scene_add", scene_add},
+    {"scene_move", scene_move},
+    {"scene_material", scene_material},
+    {"scene_remove", scene_remove},
+    {"scene_contacts", scene_contacts},
+    {"scene_events", scene_events},
     {"get", get},
     {"set", set},
     {"store", store},

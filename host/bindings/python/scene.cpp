@@ -161,6 +161,7 @@ void define_scene(py::module_& module) {
       .value("PRESSED", INKWELL_PRESSED, "a button was pressed")
       .value("RELEASED", INKWELL_RELEASED, "a button was released");
   py::class_<Event> event_type(module, "Event", "A touch, or a change of a button.");
+  make_value(event_type, &Event::kind, &Event::button, &Event::time_s, &Event::contact);
   event_type.def_readonly("kind", &Event::kind)
       .def_readonly("button", &Event::button, "1 or 2 for a button, otherwise 0")
       .def_readonly("time_s", &Event::time_s, "board time, s")

@@ -34,19 +34,29 @@ class EventKind(enum.Enum):
 
 class Contact:
     """A part of an object that the tip touches."""
-    object: int
-    triangle: int
-    point_m: _Array
-    normal: _Array
-    depth_m: float
-    time_s: float
+    @property
+    def object(self) -> int: ...
+    @property
+    def triangle(self) -> int: ...
+    @property
+    def point_m(self) -> _Array: ...
+    @property
+    def normal(self) -> _Array: ...
+    @property
+    def depth_m(self) -> float: ...
+    @property
+    def time_s(self) -> float: ...
 
 class Event:
     """A touch, or a change of a button."""
-    kind: EventKind
-    button: int
-    time_s: float
-    contact: Contact
+    @property
+    def kind(self) -> EventKind: ...
+    @property
+    def button(self) -> int: ...
+    @property
+    def time_s(self) -> float: ...
+    @property
+    def contact(self) -> Contact: ...
 
 class Pose:
     """Position and state of the stylus, once per millisecond. The arrays are read-only."""
