@@ -1,6 +1,7 @@
 #include "host/bindings/library/c_guard.hpp"
 
 #include <exception>
+#include <new>
 
 #include "host/client/device/address.hpp"
 #include "host/client/device/board_store.hpp"
@@ -52,6 +53,9 @@ inkwell_result result_of_exception() noexcept {
     return refuse(INKWELL_FORCE_LOST, error.what());
   } catch (const device::InUse& error) {
     return refuse(INKWELL_IN_USE, error.what());
+  } catch (const std::bad_alloc&) {
+    return refuse(INKWELL_FAILED,
+                  "The computer has too little free memory for this call. Close programs, or send less data.");
   } catch (const std::exception& error) {
     return refuse(INKWELL_FAILED, error.what());
   } catch (...) {

@@ -498,8 +498,8 @@ mxArray* table_of(std::vector<const char*> names, const Rows& rows, Fields field
 Answers scene_contacts(const Arguments& arguments) {
   std::vector<inkwell_contact> contacts(INKWELL_CONTACTS_MAXIMUM);
   std::size_t count = 0;
-  require(inkwell_scene_get_contacts(find(arguments)->second, contacts.data(), sizeof(inkwell_contact),
-                                     contacts.size(), &count));
+  require(inkwell_scene_get_contacts(find(arguments)->second, contacts.data(), sizeof(inkwell_contact), contacts.size(),
+                                     &count));
   contacts.resize(std::min(count, contacts.size()));
   return {table_of({"object", "triangle", "point_m", "normal", "depth_m", "time_s"}, contacts, fields_of)};
 }

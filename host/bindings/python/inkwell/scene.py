@@ -117,8 +117,8 @@ class Scene:
             quaternion: _Vector = _NOT_TURNED, material: Material | str | None = None, smooth: bool = False) -> SceneObject:
         """Adds a mesh. `vertices` are x, y and z in m, shape (n, 3). `faces` are the rows of the corners of each triangle,
         counter-clockwise as seen from outside, shape (m, 3). The library reads float32, float64, and integers of 32 and
-        64 bits from C-contiguous arrays without a copy in Python. The call prepares the mesh: about 1 s for a million
-        triangles. An open mesh is a surface with two sides. `smooth` hides facets; a smoothed surface can supply
+        64 bits from C-contiguous arrays without a copy in Python. The call prepares the mesh, which
+        lasts a few seconds for a million triangles. An open mesh is a surface with two sides. `smooth` hides facets; a smoothed surface can supply
         energy."""
         points = _rows_of_three(vertices, "fiu", (np.float32, np.float64), "vertices")
         corners = _rows_of_three(faces, "iu", (np.int32, np.uint32, np.uint64, np.int64), "faces")

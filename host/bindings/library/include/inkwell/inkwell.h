@@ -553,12 +553,12 @@ typedef struct inkwell_object {
   int is_smooth; /* 1: normals of a mesh are interpolated, which hides facets. A smoothed surface can supply energy */
 } inkwell_object;
 
-/* Adds an object and writes its number, which is never 0 and not used again. `size` is sizeof(inkwell_object). The calling
- * thread prepares a mesh: about 1 s for a million triangles. Duplicate triangles and triangles without area are
- * ignored, and a mesh that is inside out is turned. An open mesh is a surface with two sides. */
+/* Adds an object and writes its number, which is never 0 and is not used again. `size` is sizeof(inkwell_object). The
+ * calling thread prepares a mesh, which lasts a few seconds for a million triangles. Duplicate triangles and triangles
+ * without area are ignored, and a mesh that is inside out is turned. An open mesh is a surface with two sides. */
 INKWELL_API inkwell_result inkwell_scene_add(inkwell_arm* arm, const inkwell_object* object, size_t size,
                                              uint32_t* number);
-/* Moves an object. An object that moves pushes the tip. */
+/* Moves an object. It pushes the tip on a straight path from its previous placement. */
 INKWELL_API inkwell_result inkwell_scene_move(inkwell_arm* arm, uint32_t number, const inkwell_placement* placement);
 INKWELL_API inkwell_result inkwell_scene_set_material(inkwell_arm* arm, uint32_t number,
                                                       const inkwell_material* material);
@@ -600,8 +600,8 @@ typedef struct inkwell_event {
 } inkwell_event;
 
 /* Writes the oldest events, at most `capacity`, and their number to `count`, without waiting. `size` is
- * sizeof(inkwell_event). Events occur while the scene is felt. The library stores 1024 events. `lost`, which may be NULL,
- * becomes the number of events that were lost since the last call. */
+ * sizeof(inkwell_event). Events occur while this program drives the arm. The library stores 1024 events. `lost`, which
+ * may be NULL, becomes the number of events that were lost since the last call. */
 INKWELL_API inkwell_result inkwell_scene_read_events(inkwell_arm* arm, inkwell_event* events, size_t size,
                                                      size_t capacity, size_t* count, uint64_t* lost);
 
