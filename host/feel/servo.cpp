@@ -117,7 +117,10 @@ std::optional<device::LocalModel> Servo::step(const device::DrivenPose& driven) 
     newest_step_ = {};
     velocity_ = {};
   }
-  if (!pose.is_referenced) return std::nullopt;
+  if (!pose.is_referenced) {
+    show(time_s);
+    return std::nullopt;
+  }
   const glm::dvec3 position_m = vector_of(pose.position_m);
   velocity_.add(time_s, {position_m.x, position_m.y, position_m.z});
   const auto velocity_m_s = velocity_.velocity_m_s();

@@ -78,6 +78,14 @@ TEST_CASE("the servo answers only the newest of several poses, and none without 
   rig.pose.state = protocol::State::active;
   rig.pose.is_referenced = false;
   CHECK_FALSE(rig.at(0.034));
+  rig.pose.state = protocol::State::active;
+  rig.pose.is_referenced = true;
+  rig.at(0.06);
+  rig.at(0.034);
+  CHECK(rig.servo.view().contact_count == 1);
+  rig.pose.is_referenced = false;
+  rig.at(0.034);
+  CHECK(rig.servo.view().contact_count == 0);
 }
 
 TEST_CASE("a hand in the object is free when the force is switched on, until it has left the object") {
