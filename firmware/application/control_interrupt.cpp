@@ -70,7 +70,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
     if (host_link.commands.is_of_gone_host(*command)) controller.raise(Fault::usb_gone);
   }
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
-  if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
+  if (auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (auto* model = host_link.program.take_local_model()) controller.follow(*model);
   if (host_link.update_requested.load()) controller.leave_for_update();
   const std::uint32_t last_round_periods = main_loop_periods.load();
@@ -98,6 +98,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
                     .periods = period,
                     .begin_cycles = begin_cycles};
   host_link.samples.record();
+  host_link.program.note_proxy(controller.proxy_m());
   host_link.poses.note_load(controller.servo_cycles());
   controller.finish(clock);
 

@@ -97,7 +97,7 @@ void Controller::drive(const ForceTarget& target, const Settings& settings) {
   if (program_.set_target(target, settings.program_force)) ++late_force_reports_;
 }
 
-void Controller::replace_shapes(const Shapes& shapes) {
+void Controller::replace_shapes(Shapes& shapes) {
   touch_.shapes.replace(shapes);
   world_changed_ = true;
 }
@@ -155,9 +155,8 @@ void Controller::find_pose(const Settings& settings) {
 void Controller::render_force(const Settings& settings) {
   probe_.contact = find_contact(probe_.position_m, settings.box);
   program_.advance(settings.program_force);
-  const bool shapes_changed = touch_.shapes.age();
-  const bool model_expired = touch_.age_model();
-  const bool world_changed = std::exchange(world_changed_, false) || shapes_changed || model_expired;
+  const bool object_expired = touch_.age();
+  const bool world_changed = std::exchange(world_changed_, false) || object_expired;
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
   const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
   const bool law_is_felt = force_is_on() && law_rendered;
@@ -178,8 +177,9 @@ void Controller::render_force(const Settings& settings) {
   Vector3 rendered_N;
   probe_.wall = {settings.wall.stiffness_N_per_m, settings.wall.damping_Ns_per_m};
   if (touch_.has_objects()) {
-    const TouchForce& touch =
-        touch_.step(probe_.position_m, probe_.velocity_m_per_s, law_is_felt ? &settings.box : nullptr, settings.wall);
+    const bool may_touch_wall = law_is_felt && touch_.can_touch_wall(probe_.contact);
+    const TouchForce& touch = touch_.step(probe_.position_m, probe_.velocity_m_per_s,
+                                          may_touch_wall ? &settings.box : nullptr, settings.wall);
     reserve_.spend(touch.raised_J);
     rendered_N = touch.objects_N;
     probe_.walls_N = touch.walls_N;

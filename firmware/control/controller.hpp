@@ -75,10 +75,13 @@ class Controller {
   void host_alive() { host_silence_periods_ = 0; }
   /// Sets the force of a program on the PC.
   [[gnu::cold]] void drive(const ForceTarget& target, const Settings& settings);
-  /// Sets the shapes of a program on the PC. `shapes` must not change until the next call.
-  void replace_shapes(const Shapes& shapes);
-  /// Sets the local model of a program on the PC. `model` belongs to the controller until the next call.
+  /// Sets the shapes of a program on the PC. `shapes` has tangent planes, and belongs to the controller until the next
+  /// call.
+  void replace_shapes(Shapes& shapes);
+  /// Sets the local model of a program on the PC, under the same conditions.
   void follow(LocalModel& model) { touch_.follow(model); }
+  /// Position of the proxy after the last step.
+  const Vector3& proxy_m() const { return touch_.proxy_m(); }
   /// Requests the state `update`. Call this function in each period until the boot loader starts.
   void leave_for_update() { pending_.events |= protocol::events(protocol::Event::update); }
   /// Reports faults found outside the signal path. The faults switch the bridges off in the next step.

@@ -79,11 +79,9 @@ bool decode_plane(const protocol::PlaneEntry& entry, control::Plane& plane) {
   return true;
 }
 
-/// Sets the distance from the center beyond which a proxy does not touch the solid. The proxy moves less than the
-/// margin in a period.
+/// Sets the distance from the center beyond which a proxy is not near the solid.
 void set_reach(control::Solid& solid, float core_m) {
-  constexpr float margin_m = 0.001f;
-  const float reach_m = core_m + solid.radius_m + margin_m;
+  const float reach_m = core_m + solid.radius_m + control::near_margin_m;
   solid.reach_squared_m2 = reach_m * reach_m;
 }
 
@@ -170,37 +168,31 @@ bool decode_feature(const protocol::FeatureEntry& entry, const protocol::LocalMo
   feature = {};
   feature.surface = materials[entry.material];
   if (!(feature.surface.stiffness_N_per_m > 0.0f)) return false;
-  control::Solid& solid = feature.solid;
-  solid.axes[0] = vector_of(direction);
+  feature.kind = entry.kind;
+  feature.axis = vector_of(direction);
   switch (entry.kind) {
-    case protocol::FeatureKind::plane:
-      solid.core = Core::half_space;
-      solid.centre_m = anchor_m - length_m(entry.lengths[0]) * solid.axes[0];
-      break;
+    case protocol::FeatureKind::plane: feature.centre_m = anchor_m - length_m(entry.lengths[0]) * feature.axis; break;
     case protocol::FeatureKind::sphere:
-      solid.core = Core::point;
-      solid.radius_m = length_m(entry.lengths[1]);
-      solid.centre_m = anchor_m - (length_m(entry.lengths[0]) + solid.radius_m) * solid.axes[0];
+      feature.radius_m = length_m(entry.lengths[1]);
+      feature.centre_m = anchor_m - (length_m(entry.lengths[0]) + feature.radius_m) * feature.axis;
       break;
     case protocol::FeatureKind::cylinder: {
       const auto across = protocol::across(direction);
-      solid.core = Core::segment;
-      solid.radius_m = length_m(report.cylinder_radius);
-      solid.centre_m = anchor_m + length_m(entry.lengths[0]) * vector_of(across[0]) +
-                       length_m(entry.lengths[1]) * vector_of(across[1]);
-      solid.half_m = {protocol::shape_distance_maximum_m};
+      feature.radius_m = length_m(report.cylinder_radius);
+      feature.centre_m = anchor_m + length_m(entry.lengths[0]) * vector_of(across[0]) +
+                         length_m(entry.lengths[1]) * vector_of(across[1]);
       break;
     }
     default: return false;
   }
-  if (solid.core != Core::half_space && solid.radius_m < smallest_feature_radius_m) return false;
+  if (entry.kind != protocol::FeatureKind::plane && feature.radius_m < smallest_feature_radius_m) return false;
   if (entry.moves == 0) return true;
   const Vector3 spin_rad_per_s = protocol::local_spin_step_rad_per_s * Vector3{static_cast<float>(report.spin[0]),
                                                                                static_cast<float>(report.spin[1]),
                                                                                static_cast<float>(report.spin[2])};
-  feature.velocity_m_per_s = vector_of(report.velocity, protocol::local_speed_step_m_per_s) +
-                             control::cross(spin_rad_per_s, solid.centre_m - anchor_m);
-  feature.axis_rate_per_s = control::cross(spin_rad_per_s, solid.axes[0]);
+  feature.motion.velocity_m_per_s = vector_of(report.velocity, protocol::local_speed_step_m_per_s) +
+                                    control::cross(spin_rad_per_s, feature.centre_m - anchor_m);
+  feature.axis_rate_per_s = control::cross(spin_rad_per_s, feature.axis);
   return true;
 }
 
@@ -298,6 +290,8 @@ std::optional<control::ForceTarget> decode_local_model(std::span<const std::byte
   control::LocalModel& decoded = model != nullptr ? *model : unused;
   decoded.count = local.feature_count;
   decoded.life_periods = local.life_ms * millisecond_periods;
+  decoded.age_s = 0.0f;
+  decoded.turn = 0;
   for (std::size_t i = 0; i < decoded.count; ++i)
     if (!decode_feature(local.features[i], local, materials, decoded.features[i])) return std::nullopt;
   const std::uint32_t interval_periods = local.interval_ms * millisecond_periods;
@@ -362,6 +356,7 @@ bool ProgramRequests::accept_local_model(std::span<const std::byte> report, bool
   const std::uint32_t sequence = half_at(report, offsetof(protocol::LocalModelReport, sequence));
   const std::uint32_t answered = half_at(report, offsetof(protocol::LocalModelReport, pose_sequence));
   if (!count(target, is_of_driver, (pose_sequence - answered) & 0xFFFFu)) return false;
+  if (model != nullptr) find_tangents(*model, proxy_m());
   const std::uint32_t newest = newest_sequence_.value_or(sequence - 1);
   offer(*target, newest + ((sequence - newest) & 0xFFFFu));
   if (model != nullptr) models_.offer();
@@ -372,6 +367,7 @@ protocol::RequestResult ProgramRequests::accept_shapes(std::span<const std::byte
   control::Shapes* next = shapes_.next();
   if (next == nullptr) return protocol::RequestResult::busy;
   if (!decode_shapes(report, *next, materials_)) return protocol::RequestResult::malformed;
+  find_tangents(*next, proxy_m());
   shapes_.offer();
   return protocol::RequestResult::accepted;
 }

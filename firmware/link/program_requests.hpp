@@ -67,18 +67,30 @@ class ProgramRequests {
 
   // ---- control interrupt ----
 
+  /// Notes the position of the proxy, from which the main loop finds the first tangent planes.
+  void note_proxy(const control::Vector3& proxy_m) {
+    proxy_x_m_.store(proxy_m.x);
+    proxy_y_m_.store(proxy_m.y);
+    proxy_z_m_.store(proxy_m.z);
+  }
+
   /// Returns the newest request since the last call, or null. The result is valid until the next call.
   const control::ForceTarget* take_force() { return forces_.swap_if_offered() ? &forces_.used() : nullptr; }
-  const control::Shapes* take_shapes() { return shapes_.swap_if_offered() ? &shapes_.used() : nullptr; }
+  control::Shapes* take_shapes() { return shapes_.swap_if_offered() ? &shapes_.used() : nullptr; }
   control::LocalModel* take_local_model() { return models_.swap_if_offered() ? &models_.used() : nullptr; }
 
  private:
   bool count(std::optional<control::ForceTarget> target, bool is_of_driver, std::uint32_t pose_age_ms);
   void offer(const control::ForceTarget& target, std::uint32_t sequence);
+  /// The coordinates may be from two periods. Each point gives tangent planes outside the objects.
+  control::Vector3 proxy_m() const { return {proxy_x_m_.load(), proxy_y_m_.load(), proxy_z_m_.load()}; }
 
   Handover<control::ForceTarget> forces_;
   Handover<control::Shapes> shapes_;
   Handover<control::LocalModel> models_;
+  Shared<float> proxy_x_m_{0.0f};
+  Shared<float> proxy_y_m_{0.0f};
+  Shared<float> proxy_z_m_{0.0f};
   Materials materials_{};
   std::uint32_t forces_received_ = 0;
   std::uint32_t forces_lost_ = 0;

@@ -57,18 +57,19 @@ control::Shapes nine_shapes() {
   const float diagonal = 1.0f / std::numbers::sqrt3_v<float>;
   control::Shapes shapes;
   shapes.solids[0] = {.core = control::Solid::Core::point, .radius_m = 0.02f, .reach_squared_m2 = 0.0005f};
-  for (unsigned i = 0; i < shapes.planes.size(); ++i) {
+  for (unsigned i = 0; i < control::Shapes::planes_maximum; ++i) {
     const auto sign = [&](unsigned axis) { return (i >> axis & 1) != 0 ? diagonal : -diagonal; };
     shapes.planes[i] = {{sign(0), sign(1), sign(2)}, -0.06f};
   }
   shapes.surfaces.fill(surface);
-  for (std::size_t i = 0; i <= shapes.planes.size(); ++i) shapes.life_periods[i] = control::Shapes::lasting;
+  for (std::size_t i = 0; i <= control::Shapes::planes_maximum; ++i) shapes.life_periods[i] = control::Shapes::lasting;
+  find_tangents(shapes, {});
   return shapes;
 }
 
 void walls_and_shapes(benchmark::State& state) {
   Path path;
-  const auto shapes = nine_shapes();
+  auto shapes = nine_shapes();
   control::Touch touch;
   touch.shapes.replace(shapes);
   const control::Surface surface{.stiffness_N_per_m = wall.stiffness_N_per_m,

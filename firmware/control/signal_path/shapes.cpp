@@ -1,37 +1,41 @@
 #include "firmware/control/signal_path/shapes.hpp"
 
+#include <bit>
+
 namespace inkwell::control {
 
-namespace {
-
-/// Plane for an unused entry. Every point is in the free space of this plane.
-constexpr Plane nowhere{.normal = {}, .offset_m = -1.0f};
-
-}  // namespace
-
-void LivingShapes::replace(const Shapes& shapes) {
+void LivingShapes::replace(Shapes& shapes) {
   shapes_ = &shapes;
   age_periods_ = 0;
-  list_alive();
+  living_ = shapes.used;
+  near_ = shapes.near;
 }
 
 bool LivingShapes::age() {
-  if (next_end_periods_ == 0 || ++age_periods_ != next_end_periods_) return false;
-  list_alive();
+  if (living_ == 0) return false;
+  ++age_periods_;
+  aged_ = aged_ == 0 ? Shapes::maximum - 1 : aged_ - 1;
+  const std::uint32_t bit = 1u << aged_;
+  const std::uint32_t life_periods = shapes_->life_periods[aged_];
+  if ((living_ & bit) == 0 || life_periods > age_periods_ || life_periods == Shapes::lasting) return false;
+  living_ &= ~bit;
+  near_ &= ~bit;
   return true;
 }
 
-void LivingShapes::list_alive() {
-  next_end_periods_ = 0;
-  alive_ = 0;
-  for (std::size_t i = 0; i < Shapes::maximum; ++i) {
-    const std::uint32_t end_periods = shapes_->life_periods[i];
-    const bool lives = end_periods > age_periods_;
-    const bool ends_next = next_end_periods_ == 0 || end_periods < next_end_periods_;
-    if (lives) alive_ |= 1u << i;
-    if (lives && end_periods != Shapes::lasting && ends_next) next_end_periods_ = end_periods;
-    if (i < planes_.size()) planes_[i] = lives ? shapes_->planes[i] : nowhere;
-  }
+void LivingShapes::examine(const Vector3& proxy_m) {
+  examine_next(waiting_solids_, near_ & ~Shapes::all_planes, proxy_m);
+  examine_next(waiting_, living_ & (Shapes::all_planes | ~near_), proxy_m);
+}
+
+void LivingShapes::examine_next(std::uint32_t& waiting, std::uint32_t among, const Vector3& proxy_m) {
+  waiting &= among;
+  if (waiting == 0) waiting = among;
+  if (waiting == 0) return;
+  const auto number = static_cast<std::size_t>(std::countr_zero(waiting));
+  const std::uint32_t bit = 1u << number;
+  waiting &= ~bit;
+  near_ = is_near(*shapes_, number, proxy_m) ? near_ | bit : near_ & ~bit;
 }
 
 }  // namespace inkwell::control

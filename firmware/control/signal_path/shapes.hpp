@@ -12,57 +12,74 @@
 
 namespace inkwell::control {
 
-/// A point x is in the free space if normal * x > offset.
-struct Plane {
-  Vector3 normal;  ///< unit vector
-  float offset_m;
-};
-
 /// Set of shapes, prepared outside the interrupt. Shapes 0 to 7 are the planes, and the other shapes are the solids.
 struct Shapes {
   static constexpr std::size_t planes_maximum = protocol::shape_planes_maximum;
   /// The sphere of a ShapesReport is the last solid.
   static constexpr std::size_t solids_maximum = protocol::shape_solids_maximum + 1;
   static constexpr std::size_t maximum = planes_maximum + solids_maximum;
+  static constexpr std::uint32_t all_planes = (1u << planes_maximum) - 1u;
   /// Value of `life_periods` for a shape that does not expire.
   static constexpr std::uint32_t lasting = 0xFFFFFFFFu;
 
-  std::array<Plane, planes_maximum> planes{};
+  /// The planes, and then the tangent planes of the solids.
+  std::array<Plane, maximum> planes{};
   std::array<Solid, solids_maximum> solids{};
   std::array<Surface, maximum> surfaces{};
   /// Life of each shape; 0 for an unused shape.
   std::array<std::uint32_t, maximum> life_periods{};
+  std::uint32_t used = 0;  ///< one bit per shape number
+  std::uint32_t near = 0;  ///< one bit per shape within the margin of the proxy
 };
+
+/// Renews the tangent plane of a shape. Returns true if the shape is within near_margin_m of the proxy.
+inline bool is_near(Shapes& shapes, std::size_t number, const Vector3& proxy_m) {
+  Plane& plane = shapes.planes[number];
+  if (number >= Shapes::planes_maximum)
+    return find_tangent(shapes.solids[number - Shapes::planes_maximum], proxy_m, plane);
+  return dot(plane.normal, proxy_m) - plane.offset_m < near_margin_m;
+}
+
+/// Sets `used`, `near` and the tangent planes of a new set from its other members. This function is inline, because
+/// code of the main loop must not be in the interrupt memory.
+inline void find_tangents(Shapes& shapes, const Vector3& proxy_m) {
+  shapes.used = 0;
+  shapes.near = 0;
+  for (std::size_t i = 0; i < Shapes::maximum; ++i) {
+    if (shapes.life_periods[i] == 0) continue;
+    shapes.used |= 1u << i;
+    if (is_near(shapes, i, proxy_m)) shapes.near |= 1u << i;
+  }
+}
 
 /// Shapes that have not expired.
 class LivingShapes {
  public:
-  /// Activates a new set. `shapes` must not change until the next call.
-  void replace(const Shapes& shapes);
+  /// Activates a new set. The board changes the set until the next call.
+  void replace(Shapes& shapes);
 
-  /// Advances by one period. Returns true if a shape has expired.
+  /// Advances by one period. Returns true if a shape has expired. A shape ends at most 25 periods after its life.
   bool age();
 
-  bool any() const { return alive_ != 0; }
-  /// One bit per living solid, bit 0 for the first solid.
-  std::uint32_t solids() const { return alive_ >> Shapes::planes_maximum; }
-  /// Every point is in the free space of an expired plane.
-  const std::array<Plane, Shapes::planes_maximum>& planes() const { return planes_; }
-  bool any_plane() const { return (alive_ & ((1u << Shapes::planes_maximum) - 1)) != 0; }
-  const Solid& solid(std::size_t number) const { return shapes_->solids[number]; }
-  const Surface& surface_of_plane(std::size_t number) const { return shapes_->surfaces[number]; }
-  const Surface& surface_of_solid(std::size_t number) const {
-    return shapes_->surfaces[Shapes::planes_maximum + number];
-  }
+  /// Examines two shapes in turn: a solid near the proxy, whose tangent plane is renewed, and one of the other shapes.
+  void examine(const Vector3& proxy_m);
+
+  bool any() const { return living_ != 0; }
+  /// Shapes near the proxy, one bit per shape number.
+  std::uint32_t near() const { return near_; }
+  const Plane& plane(std::size_t number) const { return shapes_->planes[number]; }
+  const Surface& surface(std::size_t number) const { return shapes_->surfaces[number]; }
 
  private:
-  [[gnu::cold]] void list_alive();
+  void examine_next(std::uint32_t& waiting, std::uint32_t among, const Vector3& proxy_m);
 
-  const Shapes* shapes_ = nullptr;
+  Shapes* shapes_ = nullptr;
   std::uint32_t age_periods_ = 0;
-  std::uint32_t next_end_periods_ = 0;  ///< age of the next expiry; 0 for none
-  std::uint32_t alive_ = 0;             ///< one bit per shape number
-  std::array<Plane, Shapes::planes_maximum> planes_{};
+  std::uint32_t living_ = 0;          ///< one bit per shape number
+  std::uint32_t near_ = 0;            ///< living shapes near the proxy
+  std::uint32_t waiting_solids_ = 0;  ///< near solids that wait for their turn
+  std::uint32_t waiting_ = 0;         ///< other shapes that wait for their turn
+  std::uint32_t aged_ = 0;            ///< number of the shape whose life was examined last
 };
 
 static_assert(Shapes::maximum <= 32, "LivingShapes has one bit per shape");

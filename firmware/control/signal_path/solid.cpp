@@ -6,12 +6,6 @@ namespace inkwell::control {
 
 bool find_foot(const Solid& solid, const Vector3& point_m, Foot& foot) {
   Vector3 out_m = point_m - solid.centre_m;
-  if (solid.core == Solid::Core::half_space) {
-    foot = {solid.axes[0], dot(solid.axes[0], out_m)};
-    return true;
-  }
-  // Distances from the core below 0.1 um give no reliable direction.
-  constexpr float smallest_squared_m2 = 1e-14f;
   const std::size_t axes = solid.core == Solid::Core::point ? 0 : (solid.core == Solid::Core::box ? 3 : 1);
 #pragma GCC unroll 1  // unrolled code does not fit into the interrupt memory
   for (std::size_t i = 0; i < axes; ++i) {
@@ -30,6 +24,14 @@ bool find_foot(const Solid& solid, const Vector3& point_m, Foot& foot) {
   const float per_distance = reciprocal_square_root(squared_m2);
   foot = {per_distance * out_m, squared_m2 * per_distance - solid.radius_m};
   return true;
+}
+
+bool find_tangent(const Solid& solid, const Vector3& point_m, Plane& tangent) {
+  const Vector3 from_centre_m = point_m - solid.centre_m;
+  Foot foot;
+  if (dot(from_centre_m, from_centre_m) > solid.reach_squared_m2 || !find_foot(solid, point_m, foot)) return false;
+  tangent = {foot.normal, dot(foot.normal, point_m) - foot.height_m};
+  return foot.height_m < near_margin_m;
 }
 
 }  // namespace inkwell::control

@@ -1,4 +1,4 @@
-// Solids that the tip cannot enter: half-space, sphere, capsule, cylinder, box.
+// Solids that the tip cannot enter: sphere, capsule, cylinder, box.
 #pragma once
 
 #include <array>
@@ -8,19 +8,32 @@
 
 namespace inkwell::control {
 
+/// A point x is in the free space if normal * x > offset.
+struct Plane {
+  Vector3 normal;  ///< unit vector
+  float offset_m;
+};
+
+/// Shapes at a larger distance from the proxy are examined in turn. Until the next examination, at most 25 periods
+/// later, a proxy at 2 m/s moves less.
+inline constexpr float near_margin_m = 0.003f;
+
+/// Distances from a core below 0.1 um give no reliable direction.
+inline constexpr float smallest_squared_m2 = 1e-14f;
+
 /// All points within `radius_m` of a core. The core of a sphere is its center. The core of a capsule or of an infinite
 /// cylinder is a segment. The core of a rounded box is a smaller box, and the core of a rounded cylinder is a smaller
 /// cylinder.
 struct Solid {
-  enum class Core : std::uint32_t { nothing, half_space, point, segment, cylinder, box };
+  enum class Core : std::uint32_t { nothing, point, segment, cylinder, box };
 
   Core core = Core::nothing;
   Vector3 centre_m;
-  /// Unit vectors: the normal of a half-space, the axis of a segment or cylinder, the edges of a box.
+  /// Unit vectors: the axis of a segment or cylinder, the edges of a box.
   std::array<Vector3, 3> axes{};
   std::array<float, 3> half_m{};  ///< half lengths of the core along the axes
   float core_radius_m = 0.0f;     ///< of the core of a cylinder
-  float radius_m = 0.0f;          ///< radius, or rounding of the edges; 0 for a half-space
+  float radius_m = 0.0f;          ///< radius, or rounding of the edges
   float reach_squared_m2 = 0.0f;  ///< a proxy at a larger distance from `centre_m` does not touch the solid
 };
 
@@ -32,5 +45,9 @@ struct Foot {
 
 /// Returns false if the solid has no normal at the point, because the point is in the core.
 bool find_foot(const Solid& solid, const Vector3& point_m, Foot& foot);
+
+/// Sets the tangent plane at the foot of a point. Returns false if the point is farther than near_margin_m from the
+/// solid, or in the core.
+bool find_tangent(const Solid& solid, const Vector3& point_m, Plane& tangent);
 
 }  // namespace inkwell::control

@@ -14,4 +14,10 @@ struct Surface {
   float viscosity_Ns_per_m;  ///< tangential force per tangential speed; the force does not exceed the normal force
 };
 
+/// Motion of a surface.
+struct Motion {
+  Vector3 velocity_m_per_s;
+  float rise_m = 0.0f;  ///< outward movement of a recessed surface in this period
+};
+
 }  // namespace inkwell::control

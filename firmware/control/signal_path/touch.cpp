@@ -1,5 +1,7 @@
 #include "firmware/control/signal_path/touch.hpp"
 
+#include <bit>
+
 #include "firmware/control/signal_path/trigonometry.hpp"
 
 namespace inkwell::control {
@@ -7,13 +9,20 @@ namespace inkwell::control {
 namespace {
 
 constexpr Vector3 zero{};
+constexpr Motion still{};
+constexpr std::array<Vector3, 6> wall_normals{{{1.0f, 0.0f, 0.0f},
+                                               {-1.0f, 0.0f, 0.0f},
+                                               {0.0f, 1.0f, 0.0f},
+                                               {0.0f, -1.0f, 0.0f},
+                                               {0.0f, 0.0f, 1.0f},
+                                               {0.0f, 0.0f, -1.0f}}};
 
 /// Largest increase of the force of a recessed surface in a period.
 constexpr float rise_N = 4e-3f;
-/// Depth above which a barrier excludes a point. Rounding errors are smaller.
-constexpr float depth_tolerance_m = 1e-7f;
 /// Square of the sine of the smallest angle between two barriers that count as two.
 constexpr float flat_sine_squared = 1e-5f;
+
+constexpr float least(float a, float b) { return a < b ? a : b; }
 
 /// Distance between probe and the point `out_m` away from the probe, measured into the barrier.
 float depth_at(const Barrier& barrier, const Vector3& out_m) { return barrier.depth_m - dot(barrier.normal, out_m); }
@@ -126,12 +135,9 @@ Tangential friction(const Surface& surface, const Vector3& lag_m, const Vector3&
 
 // Each pass adds the barrier that excludes the point most. At most three barriers remain.
 void find_support(const Barriers& barriers, Support& support) {
-  support.count = 0;
-  const Barrier* next = deepest(barriers, zero);
-  if (next == nullptr) return;
-  set_one(support, *next);
+  set_one(support, *barriers.deepest);
   if (barriers.count == 1) return;
-  next = deepest(barriers, support.out_m);
+  const Barrier* next = deepest(barriers, support.out_m);
   if (next == nullptr) return;
   set_two(support, *support.barriers[0], *next);
   if (barriers.count == 2) return;
@@ -143,9 +149,33 @@ void find_support(const Barriers& barriers, Support& support) {
     set_three(support, *support.barriers[0], *support.barriers[1], *next);
 }
 
+void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
+  Barrier& barrier = list[count++];
+  barrier.normal.x = normal.x;
+  barrier.normal.y = normal.y;
+  barrier.normal.z = normal.z;
+  barrier.depth_m = depth_m;
+  barrier.surface = &surface;
+  barrier.motion = &motion;
+  if (depth_m <= deepest_m) return;
+  deepest_m = depth_m;
+  deepest = &barrier;
+}
+
 void Touch::follow(LocalModel& model) {
   model_ = &model;
   model_is_new_ = true;
+#pragma GCC unroll 1
+  for (std::size_t i = 0; i < model.count; ++i) {
+    Feature& feature = model.features[i];
+    const float depth_m = feature.tangent.offset_m - dot(feature.tangent.normal, proxy_m_);
+    feature.recess_m = depth_m > 0.0f ? depth_m : 0.0f;
+  }
+}
+
+bool Touch::age() {
+  const bool shapes_changed = shapes.age();
+  return age_model() || shapes_changed;
 }
 
 bool Touch::age_model() {
@@ -155,121 +185,104 @@ bool Touch::age_model() {
     return true;
   }
   --model_->life_periods;
+  model_->age_s += protocol::servo_period_s;
   return false;
+}
+
+void Touch::add_walls(const Vector3& probe_m, const Box& walls, const Surface& wall) {
+  const Vector3* normals = wall_normals.data();
+#pragma GCC unroll 1
+  for (const auto axis : {&Vector3::x, &Vector3::y, &Vector3::z}) {
+    const float low_m = walls.minimum_m.*axis - probe_m.*axis, high_m = probe_m.*axis - walls.maximum_m.*axis;
+    const bool is_low = low_m > high_m;
+    const float depth_m = is_low ? low_m : high_m;
+    if (barriers_.is_in_reach(depth_m)) barriers_.add(normals[is_low ? 0 : 1], depth_m, wall, still);
+    normals += 2;
+  }
+}
+
+void Touch::add_shapes(const Vector3& probe_m) {
+  shapes.examine(proxy_m_);
+  const Vector3 at_m = probe_m;
+  const float height_m = -barriers_.reach_m;
+  std::uint32_t near = shapes.near();
+  for (std::size_t i = 0; i < Shapes::maximum && near != 0 && barriers_.count < Barriers::maximum; ++i) {
+    const auto number = static_cast<std::size_t>(std::countr_zero(near));
+    const Plane& plane = shapes.plane(number);
+    const float depth_m = plane.offset_m - dot(plane.normal, at_m);
+    if (depth_m > height_m) barriers_.add(plane.normal, depth_m, shapes.surface(number), still);
+    near &= near - 1;
+  }
 }
 
 void Touch::add_model(const Vector3& probe_m) {
   constexpr float recovery_m = LocalModel::recovery_m_per_s * protocol::servo_period_s;
-  // In a groove of two surfaces, the proxy moves faster than the surfaces.
-  const float step_part = is_wedged_ ? 0.25f : 1.0f;
-  for (std::size_t i = 0; i < model_->count; ++i) {
-    Feature& feature = model_->features[i];
-    feature.solid.centre_m = feature.solid.centre_m + protocol::servo_period_s * feature.velocity_m_per_s;
-    feature.solid.axes[0] = feature.solid.axes[0] + protocol::servo_period_s * feature.axis_rate_per_s;
-    Foot foot;
-    if (!find_foot(feature.solid, proxy_m_, foot)) continue;
-    float rise_m = 0.0f;
-    if (model_is_new_) {
-      feature.recess_m = foot.height_m < 0.0f ? -foot.height_m : 0.0f;
-    } else if (feature.recess_m > 0.0f) {
-      const float step_m = step_part * clamp(rise_N * feature.surface.m_per_N, 0.0f, recovery_m);
-      rise_m = clamp(feature.recess_m, 0.0f, step_m);
-      feature.recess_m -= rise_m;
-    }
-    const float depth_m = dot(foot.normal, proxy_m_ - probe_m) - foot.height_m - feature.recess_m;
-    if (barriers_.is_in_reach(depth_m))
-      barriers_.list[barriers_.count++] = {foot.normal, depth_m, &feature.surface, &feature.velocity_m_per_s,
-                                           rise_m,      false};
-  }
+  // In a groove of two surfaces, the proxy moves faster than the surfaces. New surfaces do not move before they touch.
+  const float step_part = model_is_new_ ? 0.0f : (is_wedged_ ? 0.25f : 1.0f);
   model_is_new_ = false;
-}
-
-void Touch::collect(const Vector3& probe_m, const Box* walls, const Surface& wall) {
-  barriers_.count = 0;
-  if (walls != nullptr) {
-    const Vector3 low_m = walls->minimum_m - probe_m, high_m = probe_m - walls->maximum_m;
-    const std::array<float, 3> lows_m{low_m.x, low_m.y, low_m.z}, highs_m{high_m.x, high_m.y, high_m.z};
+  LocalModel& model = *model_;
+  const std::size_t count = model.count;
+  if (count == 0) return;
+  renew_tangent(model.features[model.turn], proxy_m_, model.age_s);
+  model.turn = model.turn + 1 < count ? model.turn + 1 : 0;
+  const Vector3 at_m = probe_m;
+  const float age_s = model.age_s;
 #pragma GCC unroll 1
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool is_low = lows_m[axis] > highs_m[axis];
-      const float depth_m = is_low ? lows_m[axis] : highs_m[axis];
-      if (!barriers_.is_in_reach(depth_m)) continue;
-      const float sign = is_low ? 1.0f : -1.0f;
-      const Vector3 normal{axis == 0 ? sign : 0.0f, axis == 1 ? sign : 0.0f, axis == 2 ? sign : 0.0f};
-      barriers_.list[barriers_.count++] = {normal, depth_m, &wall, &zero, 0.0f, true};
-    }
+  for (std::size_t i = 0; i < count; ++i) {
+    Feature& feature = model.features[i];
+    const Plane& tangent = feature.tangent;
+    const float step_m = step_part * least(rise_N * feature.surface.m_per_N, recovery_m);
+    feature.motion.rise_m = least(feature.recess_m, step_m);
+    feature.recess_m -= feature.motion.rise_m;
+    const float depth_m =
+        tangent.offset_m + age_s * feature.tangent_speed_m_per_s - feature.recess_m - dot(tangent.normal, at_m);
+    if (barriers_.is_in_reach(depth_m)) barriers_.add(tangent.normal, depth_m, feature.surface, feature.motion);
   }
-  if (shapes.any_plane()) {
-    // A loop without branches finds the touched planes.
-    std::uint32_t below = 0;
-    const auto height_m = [&](std::size_t i) {
-      return dot(shapes.planes()[i].normal, probe_m) - shapes.planes()[i].offset_m;
-    };
-    for (std::size_t i = 0; i < Shapes::planes_maximum; ++i)
-      below |= std::bit_cast<std::uint32_t>(height_m(i) - barriers_.reach_m) >> 31 << i;
-#pragma GCC unroll 1
-    for (std::size_t i = 0; below != 0; ++i, below >>= 1)
-      if ((below & 1u) != 0 && barriers_.count < Barriers::maximum)
-        barriers_.list[barriers_.count++] = {
-            shapes.planes()[i].normal, -height_m(i), &shapes.surface_of_plane(i), &zero, 0.0f, false};
-  }
-  std::uint32_t solids = shapes.solids();
-#pragma GCC unroll 1
-  for (std::size_t i = 0; solids != 0; ++i, solids >>= 1) {
-    if ((solids & 1u) == 0) continue;
-    const Solid& solid = shapes.solid(i);
-    const Vector3 from_centre_m = proxy_m_ - solid.centre_m;
-    Foot foot;
-    if (dot(from_centre_m, from_centre_m) > solid.reach_squared_m2 || !find_foot(solid, proxy_m_, foot)) continue;
-    const float depth_m = dot(foot.normal, proxy_m_ - probe_m) - foot.height_m;
-    if (barriers_.is_in_reach(depth_m))
-      barriers_.list[barriers_.count++] = {foot.normal, depth_m, &shapes.surface_of_solid(i), &zero, 0.0f, false};
-  }
-  if (model_ != nullptr) add_model(probe_m);
 }
 
 const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls,
                               const Surface& wall) {
   if (!touches_) proxy_m_ = probe_m;
-  force_.walls_N = zero;
-  force_.objects_N = zero;
-  force_.raised_J = 0.0f;
-  collect(probe_m, walls, wall);
+  force_ = {};
+  barriers_.clear();
+  if (walls != nullptr) add_walls(probe_m, *walls, wall);
+  if (model_ != nullptr) add_model(probe_m);
+  if (shapes.any()) add_shapes(probe_m);
+  if (barriers_.deepest != nullptr) return push(probe_m, velocity_m_per_s, wall);
+  release(probe_m);
+  return force_;
+}
+
+[[gnu::noinline]] const TouchForce& Touch::push(const Vector3& probe_m, const Vector3& velocity_m_per_s,
+                                                const Surface& wall) {
   find_support(barriers_, support_);
   const Support& support = support_;
-  touches_ = support.count != 0;
+  touches_ = true;
   is_wedged_ = support.count > 1;
   barriers_.reach_m = 0.0f;
-  if (support.count == 0) {
-    proxy_m_ = probe_m;
-    return force_;
-  }
   Vector3 normal_sum_N;
   float most_N = 0.0f;
   const Barrier* main = support.barriers[0];
   const auto parts = damper_parts(support);
-  const auto add = [&](const Barrier& barrier, const Vector3& force_N) {
-    Vector3& sum_N = barrier.is_wall ? force_.walls_N : force_.objects_N;
-    sum_N = sum_N + force_N;
-  };
 #pragma GCC unroll 1
   for (std::size_t i = 0; i < support.count; ++i) {
     const Barrier& barrier = *support.barriers[i];
     barriers_.reach_m += support.depth_m[i];
-    const float speed_m_per_s = dot(barrier.normal, velocity_m_per_s - *barrier.velocity_m_per_s);
+    const float speed_m_per_s = dot(barrier.normal, velocity_m_per_s - barrier.motion->velocity_m_per_s);
     const float push_N = barrier.surface->stiffness_N_per_m * support.depth_m[i] -
                          parts[i] * barrier.surface->damping_Ns_per_m * speed_m_per_s;
     const float normal_N = push_N > 0.0f ? push_N : 0.0f;
-    force_.raised_J += normal_N * barrier.rise_m;
+    force_.raised_J += normal_N * barrier.motion->rise_m;
     const Vector3 pushed_N = normal_N * barrier.normal;
-    add(barrier, pushed_N);
     normal_sum_N = normal_sum_N + pushed_N;
+    if (barrier.surface == &wall) force_.walls_N = force_.walls_N + pushed_N;
     if (normal_N <= most_N) continue;
     most_N = normal_N;
     main = &barrier;
   }
+  force_.objects_N = normal_sum_N - force_.walls_N;
   const Vector3 frictionless_m = probe_m + support.out_m;
-  const Vector3 held_m = proxy_m_ + protocol::servo_period_s * *main->velocity_m_per_s;
+  const Vector3 held_m = proxy_m_ + protocol::servo_period_s * main->motion->velocity_m_per_s;
   proxy_m_ = frictionless_m;
   const Surface& surface = *main->surface;
   const float squared_N2 = dot(normal_sum_N, normal_sum_N);
@@ -278,15 +291,16 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   const float per_N = reciprocal_square_root(squared_N2);
   const Vector3 normal = per_N * normal_sum_N;
   const float normal_N = squared_N2 * per_N;
+  Vector3& main_N = main->surface == &wall ? force_.walls_N : force_.objects_N;
   const auto tangential = [&normal](const Vector3& vector) { return vector - dot(vector, normal) * normal; };
-  const Vector3 sideways_m_per_s = tangential(velocity_m_per_s - *main->velocity_m_per_s);
+  const Vector3 sideways_m_per_s = tangential(velocity_m_per_s - main->motion->velocity_m_per_s);
   if (surface.static_friction != 0.0f) {
     const Tangential held = friction(surface, tangential(held_m - frictionless_m), sideways_m_per_s, normal_N, slides_);
     slides_ = held.slides;
     proxy_m_ = frictionless_m + held.lag_m;
-    add(*main, held.force_N);
+    main_N = main_N + held.force_N;
   }
-  if (surface.viscosity_Ns_per_m != 0.0f) add(*main, viscous_force_N(surface, sideways_m_per_s, normal_N));
+  if (surface.viscosity_Ns_per_m != 0.0f) main_N = main_N + viscous_force_N(surface, sideways_m_per_s, normal_N);
   return force_;
 }
 

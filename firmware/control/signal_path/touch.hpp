@@ -1,16 +1,19 @@
 // Contact of the tip with all objects: walls, planes, solids and local model.
 //
 // A proxy is the point of the free space that the tip would have if the objects were rigid (Zilles and Salisbury, "A
-// constraint-based god-object method for haptic display", IROS 1995). At the proxy, each object gives a barrier: the
+// constraint-based god-object method for haptic display", IROS 1995). Near the proxy, each object gives a barrier: a
 // tangent plane of its surface. The proxy moves to the point nearest to the probe that no barrier excludes. Spring and
 // damper act between proxy and probe. Friction holds the proxy back.
+//
+// Tangent planes of curved objects are renewed in turn, so that the number of objects does not increase the work of a
+// period. An older tangent plane is outside the convex object. A new tangent plane is farther from the proxy, so it
+// does not increase the force.
 //
 // A new local model does not increase the force: its barriers recede to the proxy, so the previous proxy remains in the
 // free space, and the nearest free point is not farther from the probe than the previous proxy.
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,21 +30,30 @@ struct Barrier {
   Vector3 normal;  ///< unit vector, points into the free space
   float depth_m;   ///< depth of the probe; negative if the barrier does not exclude the probe
   const Surface* surface;
-  const Vector3* velocity_m_per_s;  ///< of the surface
-  float rise_m;                     ///< outward movement of a recessed surface in this period
-  bool is_wall;
+  const Motion* motion;  ///< of the surface
 };
+
+/// Depth above which a barrier excludes a point. Rounding errors are smaller.
+inline constexpr float depth_tolerance_m = 1e-7f;
 
 /// Barriers of one period. Further barriers are ignored.
 struct Barriers {
-  static constexpr std::size_t maximum = 12;
+  static constexpr std::size_t maximum = 10;
 
   std::array<Barrier, maximum> list{};
   std::size_t count = 0;
+  const Barrier* deepest = nullptr;  ///< of the barriers that exclude the probe; null for none
+  float deepest_m = 0.0f;
   /// A barrier at this distance from the probe may exclude the point to which other barriers push the proxy.
   float reach_m = 0.0f;
 
+  void clear() {
+    count = 0;
+    deepest = nullptr;
+    deepest_m = depth_tolerance_m;
+  }
   bool is_in_reach(float depth_m) const { return depth_m > -reach_m && count < maximum; }
+  void add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion);
 };
 
 /// Barriers that support the nearest free point.
@@ -57,7 +69,7 @@ struct Support {
   }
 };
 
-/// Finds the point nearest to the probe that no barrier excludes. Barriers within 0.2 degrees of parallel count as one
+/// Finds the point nearest to the probe that no barrier excludes. At least one barrier must exclude the probe. Barriers within 0.2 degrees of parallel count as one
 /// barrier.
 void find_support(const Barriers& barriers, Support& support);
 
@@ -72,12 +84,17 @@ class Touch {
  public:
   LivingShapes shapes;
 
-  /// Activates a new model. The board changes the model in each period until the next call.
+  /// Activates a new model with tangent planes. The board changes the model in each period until the next call.
   void follow(LocalModel& model);
-  /// Advances the local model by one period. Returns true if the model has expired.
-  bool age_model();
+  /// Advances the objects by one period. Returns true if an object has expired.
+  bool age();
   /// Returns true if there are shapes or features of a local model.
   bool has_objects() const { return shapes.any() || (model_ != nullptr && model_->count != 0); }
+
+  /// Returns false if the proxy cannot touch a wall. Then `walls` may be null.
+  bool can_touch_wall(const Contact& contact) const {
+    return barriers_.reach_m > 0.0f || contact.penetration_m != Vector3{};
+  }
 
   /// Runs one period. `walls` is null if the hand does not feel the walls of the box. Without objects, wall_force_N()
   /// returns the same force of the walls in fewer cycles.
@@ -87,13 +104,20 @@ class Touch {
   void release(const Vector3& probe_m) {
     proxy_m_ = probe_m;
     touches_ = false;
+    is_wedged_ = false;
+    barriers_.reach_m = 0.0f;
   }
 
+  /// Position of the proxy after the last period.
   const Vector3& proxy_m() const { return proxy_m_; }
   bool slides() const { return slides_; }
 
  private:
-  void collect(const Vector3& probe_m, const Box* walls, const Surface& wall);
+  bool age_model();
+  /// Moves the proxy, which touches a barrier.
+  const TouchForce& push(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Surface& wall);
+  void add_walls(const Vector3& probe_m, const Box& walls, const Surface& wall);
+  void add_shapes(const Vector3& probe_m);
   void add_model(const Vector3& probe_m);
 
   LocalModel* model_ = nullptr;

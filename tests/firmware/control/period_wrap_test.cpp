@@ -17,6 +17,7 @@ control::Shapes plane_over_the_wrap(const control::Vector3& probe_m) {
   shapes.planes[0] = {.normal = {0.0f, 0.0f, 1.0f}, .offset_m = probe_m.z + 0.002f};
   shapes.surfaces[0] = {.stiffness_N_per_m = 200.0f, .m_per_N = 0.005f, .damping_Ns_per_m = 1.0f};
   shapes.life_periods[0] = periods_before_wrap + control::periods_in(0.02f);
+  find_tangents(shapes, probe_m);
   return shapes;
 }
 
@@ -27,7 +28,7 @@ TEST_CASE("the signal path is not affected by the wrap of the period counter") {
   REQUIRE(wraps.periods() == 0u - periods_before_wrap);
   control::Samples samples = tests::samples_at_rest();
   const protocol::SignalValues begin = sooner.signals();
-  const control::Shapes shapes = plane_over_the_wrap({.z = begin[Signal::position_z_m]});
+  control::Shapes shapes = plane_over_the_wrap({.z = begin[Signal::position_z_m]});
   sooner.replace_shapes(shapes);
   wraps.replace_shapes(shapes);
 

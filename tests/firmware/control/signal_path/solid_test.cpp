@@ -23,7 +23,6 @@ const Solid solids[] = {
     {.core = Core::segment, .axes = turned, .half_m = {0.03f}, .radius_m = 0.01f},
     {.core = Core::cylinder, .axes = turned, .half_m = {0.02f}, .core_radius_m = 0.015f, .radius_m = 0.0005f},
     {.core = Core::box, .axes = turned, .half_m = {0.01f, 0.02f, 0.03f}, .radius_m = 0.0005f},
-    {.core = Core::half_space, .centre_m = {0, 0, 0.01f}, .axes = turned},
 };
 
 TEST_CASE("a foot is the nearest point of the surface, and its normal points from there to the point") {
@@ -64,7 +63,19 @@ TEST_CASE("heights above the sides, the edges and the ends of the solids") {
   CHECK(height_m(solids[2], at(0.023f, 0.019f, 0)) == near(0.0045f));
   CHECK(height_m(solids[3], at(0, 0.0305f, 0)) == near(0.01f));
   CHECK(height_m(solids[3], at(0.013f, 0.024f, 0)) == near(0.0045f));
-  CHECK(height_m(solids[4], at(0.02f, 5, 5)) == near(0.02f));
+}
+
+TEST_CASE("a tangent plane touches the solid at the foot of the point, and a far point gives none") {
+  Solid sphere = solids[0];
+  sphere.reach_squared_m2 = 0.023f * 0.023f;
+  control::Plane tangent;
+  REQUIRE(find_tangent(sphere, {0.01f, 0.0229f, 0}, tangent));
+  CHECK(tangent.normal.y == doctest::Approx(1.0f));
+  CHECK(tangent.offset_m == doctest::Approx(0.02f));
+  CHECK(!find_tangent(sphere, {0.01f, 0.0231f, 0}, tangent));
+  sphere.reach_squared_m2 = 1.0f;
+  CHECK(!find_tangent(sphere, {0.01f, 0.0231f, 0}, tangent));
+  CHECK(!find_tangent(sphere, sphere.centre_m, tangent));
 }
 
 TEST_CASE("in its core a solid has no normal") {

@@ -18,6 +18,7 @@ using control::Touch;
 using control::TouchForce;
 using control::Vector3;
 using Core = Solid::Core;
+using protocol::FeatureKind;
 
 constexpr Surface smooth{.stiffness_N_per_m = 1000.0f,
                          .m_per_N = 1e-3f,
@@ -60,7 +61,10 @@ struct Hand {
   Touch touch;
   Vector3 probe_m;
 
-  void place() { touch.shapes.replace(shapes); }
+  void place() {
+    find_tangents(shapes, probe_m);
+    touch.shapes.replace(shapes);
+  }
   Vector3 at(const Vector3& point_m, const Vector3& velocity_m_per_s = {}) {
     probe_m = point_m;
     return touch.step(probe_m, velocity_m_per_s, nullptr, smooth).objects_N;
@@ -187,6 +191,23 @@ TEST_CASE("a sphere pushes outward by its depth while the probe slides around it
   }
 }
 
+TEST_CASE("a sphere among sixteen other solids in reach is felt as one sphere, at 0.5 m/s") {
+  Hand hand;
+  for (std::size_t i = 0; i < Shapes::solids_maximum; ++i)
+    put_solid(hand.shapes, i, {.core = Core::point, .centre_m = {0.0f, i == 9 ? 0.0f : 0.1f, 0.0f}, .radius_m = 0.02f},
+              smooth);
+  hand.at({0.0f, 0.0f, 0.021f});
+  hand.place();
+  for (int i = 0; i <= 4000; ++i) {
+    const float angle_rad = 1.25e-3f * static_cast<float>(i);
+    const Vector3 out{std::sin(angle_rad), 0.0f, std::cos(angle_rad)};
+    const Vector3 force_N = hand.at(0.018f * out);
+    if (i < 20) continue;
+    CHECK(length(force_N) == doctest::Approx(2.0f).epsilon(5e-3));
+    CHECK(dot(force_N, out) == doctest::Approx(2.0f).epsilon(5e-3));
+  }
+}
+
 TEST_CASE("a probe that is pushed through the middle of a solid is still pushed back to its entry") {
   const Solid solids[] = {
       {.core = Core::point, .radius_m = 0.004f},
@@ -304,26 +325,42 @@ TEST_CASE("viscosity acts along the surface and not more than the normal force")
 // ---- local models ----
 
 control::Feature plane_feature(const Vector3& normal, float height_m, const Surface& surface) {
-  return {.solid = {.core = Core::half_space, .centre_m = height_m * normal, .axes = {normal}}, .surface = surface};
+  control::Feature feature{};
+  feature.centre_m = height_m * normal;
+  feature.axis = normal;
+  feature.surface = surface;
+  return feature;
+}
+
+/// Activates a model whose tangent planes are at the proxy, and advances it by one period.
+void follow(Touch& touch, LocalModel& model) {
+  find_tangents(model, touch.proxy_m());
+  touch.follow(model);
+}
+
+/// Runs a period without walls.
+TouchForce step(Touch& touch, const Vector3& probe_m, const Vector3& velocity_m_per_s = {}) {
+  touch.age();
+  return touch.step(probe_m, velocity_m_per_s, nullptr, smooth);
 }
 
 LocalModel model_of(std::initializer_list<control::Feature> features) {
   LocalModel model;
   std::ranges::copy(features, model.features.begin());
   model.count = features.size();
-  model.life_periods = 400;
+  model.life_periods = 5000;
   return model;
 }
 
 TEST_CASE("a surface that appears under the tip moves outward slowly, and its work is reported") {
   Touch touch;
   const Vector3 probe_m{0.0f, 0.0f, -0.001f};
-  touch.step(probe_m, {}, nullptr, smooth);
+  step(touch, probe_m);
   LocalModel model = model_of({plane_feature(up, 0.0f, smooth)});
-  touch.follow(model);
+  follow(touch, model);
   float force_N = 0.0f, work_J = 0.0f;
   for (int period = 0; period < 400; ++period) {
-    const TouchForce force = touch.step(probe_m, {}, nullptr, smooth);
+    const TouchForce force = step(touch, probe_m);
     CHECK(force.objects_N.z - force_N < 4.1e-3f);
     force_N = force.objects_N.z;
     work_J += force.raised_J;
@@ -344,14 +381,14 @@ TEST_CASE("surfaces of any stiffness rise by at most 5 mN in a period, also in g
       const float height = std::sqrt(1.0f - lean * lean);
       Touch touch;
       const Vector3 probe_m{0.0f, 0.0f, -0.001f};
-      touch.step(probe_m, {}, nullptr, smooth);
+      step(touch, probe_m);
       LocalModel model =
           model_of({plane_feature({lean, 0, height}, 0, surface), plane_feature({-lean, 0, height}, 0, surface)});
-      touch.follow(model);
+      follow(touch, model);
       float force_N = 0.0f;
       const float fastest_N = 1.01f * stiffness_N_per_m * LocalModel::recovery_m_per_s * protocol::servo_period_s;
       for (int period = 0; period < 4000; ++period) {
-        const TouchForce force = touch.step(probe_m, {}, nullptr, smooth);
+        const TouchForce force = step(touch, probe_m);
         // When the second surface touches, it still moves at the speed of one surface.
         CHECK(force.objects_N.z - force_N < (period == 1 ? 1.7e-2f : 5e-3f));
         if (lean == 0.0f) CHECK(force.objects_N.z - force_N < fastest_N);
@@ -369,27 +406,26 @@ TEST_CASE("an exchange of local models under a pressing hand does not raise the 
   };
   Touch touch;
   const Vector3 probe_m{0.001f, 0.002f, -0.003f};
-  touch.step(probe_m, {}, nullptr, smooth);
+  step(touch, probe_m);
   LocalModel models[2];
   float before_N = 0.0f, largest_N = 0.0f;
   for (int report = 0; report < 3000; ++report) {
     LocalModel& model = models[report % 2];
     model = {};
-    model.life_periods = 400;
+    model.life_periods = 5000;
     model.count = static_cast<std::size_t>(random.between(0, 3.99f));
     for (std::size_t i = 0; i < model.count; ++i) {
       control::Feature& feature = model.features[i];
       const float kind = random.between(0, 3);
       feature.surface = smooth;
-      feature.solid = {.core = kind < 1 ? Core::half_space : (kind < 2 ? Core::point : Core::segment),
-                       .centre_m = 0.004f * direction(),
-                       .axes = {direction()},
-                       .half_m = {1.0f},
-                       .radius_m = kind < 1 ? 0.0f : random.between(0.0005f, 0.01f)};
+      feature.kind = kind < 1 ? FeatureKind::plane : (kind < 2 ? FeatureKind::sphere : FeatureKind::cylinder);
+      feature.centre_m = 0.004f * direction();
+      feature.axis = direction();
+      feature.radius_m = kind < 1 ? 0.0f : random.between(0.0005f, 0.01f);
     }
-    touch.follow(model);
+    follow(touch, model);
     for (int period = 0; period < 20; ++period) {
-      const float force_N = length(touch.step(probe_m, {}, nullptr, smooth).objects_N);
+      const float force_N = length(step(touch, probe_m).objects_N);
       if (period == 0) CHECK(force_N - before_N < 1e-3f);
       before_N = force_N;
       largest_N = std::max(largest_N, force_N);
@@ -404,41 +440,34 @@ TEST_CASE("a moving surface carries the hand and its friction along at the servo
   Surface surface = rough(1.0f, 1.0f);
   surface.damping_Ns_per_m = 1.0f;
   LocalModel model = model_of({plane_feature(up, 0.0f, surface)});
-  model.features[0].velocity_m_per_s = {0.2f, 0.0f, 0.1f};
-  touch.step({0, 0, 0.001f}, {}, nullptr, smooth);
-  touch.follow(model);
+  model.features[0].motion.velocity_m_per_s = {0.2f, 0.0f, 0.1f};
+  step(touch, {0, 0, 0.001f});
+  follow(touch, model);
   // The probe moves with the surface, so the force does not change.
   Vector3 force_N;
   for (int period = 1; period <= 400; ++period) {
     const float time_s = protocol::servo_period_s * static_cast<float>(period);
-    force_N = touch.step(start_m + time_s * Vector3{0.2f, 0.0f, 0.1f}, {0.2f, 0.0f, 0.1f}, nullptr, smooth).objects_N;
+    force_N = step(touch, start_m + time_s * Vector3{0.2f, 0.0f, 0.1f}, {0.2f, 0.0f, 0.1f}).objects_N;
     if (period > 150) CHECK(force_N.z == doctest::Approx(0.5f).epsilon(1e-2));
-    CHECK(std::fabs(force_N.x) < 1e-2f);
+    CHECK(std::fabs(force_N.x) < 1.1e-2f);  // the surface moves 10 um in a period
   }
   // The surface continues, and the probe stops: the surface pushes and pulls the probe along.
   const Vector3 stopped_m = start_m + 0.02f * Vector3{0.2f, 0.0f, 0.1f};
-  for (int period = 1; period <= 40; ++period) force_N = touch.step(stopped_m, {}, nullptr, smooth).objects_N;
+  for (int period = 1; period <= 40; ++period) force_N = step(touch, stopped_m).objects_N;
   CHECK(force_N.z == doctest::Approx(0.7f + 0.1f).epsilon(0.02));
   CHECK(force_N.x == doctest::Approx(0.4f + 0.2f).epsilon(0.05));
 }
 
-TEST_CASE("a turning cylinder turns its axis, and a local model expires after its life") {
+TEST_CASE("a local model expires after its life") {
   Touch touch;
-  LocalModel model =
-      model_of({{.solid = {.core = Core::segment, .axes = {Vector3{1, 0, 0}}, .half_m = {1.0f}, .radius_m = 0.002f},
-                 .surface = smooth,
-                 .axis_rate_per_s = {0.0f, 10.0f, 0.0f}}});
+  LocalModel model = model_of({plane_feature(up, 0.0f, smooth)});
   model.life_periods = 20;
-  touch.follow(model);
+  follow(touch, model);
   CHECK(touch.has_objects());
-  for (int period = 0; period < 20; ++period) {
-    CHECK(!touch.age_model());
-    touch.step({0, 0, 0.1f}, {}, nullptr, smooth);
-  }
-  CHECK(model.features[0].solid.axes[0].y == doctest::Approx(0.01f).epsilon(1e-3));
-  CHECK(touch.age_model());
+  for (int period = 0; period < 20; ++period) CHECK(!touch.age());
+  CHECK(touch.age());
   CHECK(!touch.has_objects());
-  CHECK(!touch.age_model());
+  CHECK(!touch.age());
 }
 
 TEST_CASE("walls and objects share one proxy") {

@@ -180,17 +180,17 @@ TEST_CASE("a local model arrives at the board within the resolution of the repor
   CHECK(decoded.count == 3);
   CHECK(decoded.life_periods == 100);
   const auto& [plane, cylinder, sphere] = decoded.features;
-  CHECK(dot(plane.solid.axes[0], {0.48f, -0.6f, 0.64f}) == doctest::Approx(1.0f));
-  CHECK(std::fabs(dot(plane.solid.axes[0], plane.solid.centre_m - control::Vector3{0.032f, -0.046f, 0.05f})) < 2e-6f);
-  CHECK(plane.velocity_m_per_s == control::Vector3{});
+  CHECK(dot(plane.axis, {0.48f, -0.6f, 0.64f}) == doctest::Approx(1.0f));
+  CHECK(std::fabs(dot(plane.axis, plane.centre_m - control::Vector3{0.032f, -0.046f, 0.05f})) < 2e-6f);
+  CHECK(plane.motion.velocity_m_per_s == control::Vector3{});
   CHECK(plane.surface.stiffness_N_per_m == 1200);
-  const control::Vector3 to_axis_m = cylinder.solid.centre_m - control::Vector3{0.035f, -0.046f, 0.051f};
-  const control::Vector3 off_m = to_axis_m - dot(to_axis_m, cylinder.solid.axes[0]) * cylinder.solid.axes[0];
+  const control::Vector3 to_axis_m = cylinder.centre_m - control::Vector3{0.035f, -0.046f, 0.051f};
+  const control::Vector3 off_m = to_axis_m - dot(to_axis_m, cylinder.axis) * cylinder.axis;
   CHECK(std::sqrt(dot(off_m, off_m)) < 3e-6f);
-  CHECK(cylinder.solid.radius_m == doctest::Approx(0.001f));
-  CHECK(distance(sphere.solid.centre_m, {0.03f, -0.04f, 0.045f}) < 3e-6f);
-  CHECK(sphere.solid.radius_m == doctest::Approx(0.008f));
-  CHECK(sphere.velocity_m_per_s.x == doctest::Approx(0.1f - 2.0f * (-0.04f + 0.0471f)).epsilon(1e-3));
+  CHECK(cylinder.radius_m == doctest::Approx(0.001f));
+  CHECK(distance(sphere.centre_m, {0.03f, -0.04f, 0.045f}) < 3e-6f);
+  CHECK(sphere.radius_m == doctest::Approx(0.008f));
+  CHECK(sphere.motion.velocity_m_per_s.x == doctest::Approx(0.1f - 2.0f * (-0.04f + 0.0471f)).epsilon(1e-3));
   CHECK(cylinder.axis_rate_per_s.x == doctest::Approx(1.2f).epsilon(1e-3));
 }
 
@@ -204,11 +204,11 @@ TEST_CASE("a second cylinder radius, and a radius beyond the report, become tang
   for (auto& feature : model.features) feature.material = 3;
   control::LocalModel decoded;
   REQUIRE(decode(device::local_model_report(model, {}), decoded));
-  CHECK(decoded.features[0].solid.core == control::Solid::Core::segment);
+  CHECK(decoded.features[0].kind == protocol::FeatureKind::cylinder);
   for (const std::size_t i : {1u, 2u}) {
-    CHECK(decoded.features[i].solid.core == control::Solid::Core::half_space);
-    CHECK(decoded.features[i].solid.axes[0].z == doctest::Approx(1.0f));
-    CHECK(decoded.features[i].solid.centre_m.z == doctest::Approx(i == 1 ? -0.005f : -0.01f));
+    CHECK(decoded.features[i].kind == protocol::FeatureKind::plane);
+    CHECK(decoded.features[i].axis.z == doctest::Approx(1.0f));
+    CHECK(decoded.features[i].centre_m.z == doctest::Approx(i == 1 ? -0.005f : -0.01f));
   }
 }
 
