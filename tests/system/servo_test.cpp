@@ -17,6 +17,8 @@
 #include <unistd.h>
 
 #include "boards/omni_driver/facts.hpp"
+#include "firmware/control/signal_path/local_model.hpp"
+#include "firmware/control/signal_path/shapes.hpp"
 #include "host/client/crash/firmware_image.hpp"
 
 #include "tests/stepped_board.hpp"
@@ -86,7 +88,7 @@ TEST_CASE(
   const double sleep_share = rig.control.status().all.at("sleep_share").get<double>();
   MESSAGE("simulation: the processor sleeps ", sleep_share, " of the time");
   // The alignment of the main loop's functions to cache lines changes the result by a few percent.
-  CHECK(sleep_share > 0.11);
+  CHECK(sleep_share > 0.1);
 }
 
 namespace {
@@ -106,7 +108,7 @@ float contact_cycles(BoardRig& rig) {
 device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched, float friction) {
   device::Shapes shapes;
   for (std::size_t i = 0; i < shapes.planes.size(); ++i) {
-    const auto angle_rad = 0.7f * static_cast<float>(i);
+    const auto angle_rad = 2.1f * static_cast<float>(i);
     const std::array normal{0.6f * std::cos(angle_rad), 0.6f * std::sin(angle_rad), 0.8f};
     const float height_m = i < touched ? 0.001f : -0.02f;
     device::Plane plane{.normal = normal,
@@ -181,7 +183,7 @@ TEST_CASE(
   CHECK(bounds + resistance <= 100);
 }
 
-TEST_CASE("eight planes cost at most 650 cycles while none is touched, and leave an eighth of the period at worst") {
+TEST_CASE("eight planes cost at most 300 cycles while none is touched") {
   BoardRig rig(device::SimulationMode::fast, 1, device::CyclePricing::conservative);
   rig.make_active();
   rig.take_to(free_point_m);
@@ -194,11 +196,7 @@ TEST_CASE("eight planes cost at most 650 cycles while none is touched, and leave
   CHECK(with > without);
   check_figure_on_cycles_page("contact stage without shapes", without);
   check_figure_on_cycles_page("contact stage with eight planes", with);
-  CHECK(with - without <= 650.0f);
-  rig.device->place_shapes(eight_planes(free_point_m, 3, 0.4f));
-  rig.run(0.1);
-  MESSAGE("simulation: ", contact_cycles(rig), " with three of eight planes touched, with friction");
-  CHECK(rig.device->information().report.servo_cycles_longest < board::servo_cycles * 0.875);
+  CHECK(with - without <= 300.0f);
 }
 
 namespace {
@@ -248,7 +246,8 @@ float contact_cycles(BoardRig& rig, const device::LocalModel& model) {
 
 }  // namespace
 
-TEST_CASE("three touched curved moving features with friction cost at most 1.4 times as much as three touched planes") {
+TEST_CASE(
+    "three touched curved moving features with friction cost no more cycles and memory than three touched planes") {
   BoardRig rig(device::SimulationMode::fast, 1, device::CyclePricing::conservative);
   rig.make_active();
   rig.take_to(free_point_m);
@@ -265,10 +264,47 @@ TEST_CASE("three touched curved moving features with friction cost at most 1.4 t
   MESSAGE("simulation: contact stage ", with_planes, " cycles with three touched planes of eight, ", with_features,
           " with a sphere and two cylinders that move; longest control interrupt ",
           rig.device->information().report.servo_cycles_longest, " of ", board::servo_cycles);
-  CHECK(with_features <= 1.4f * with_planes);
-  CHECK(rig.device->information().report.servo_cycles_longest < board::servo_cycles * 0.875);
+  CHECK(with_features <= with_planes);
+  // The force law of the image uses at most 50 cycles, and the largest force law uses 1500 cycles.
+  CHECK(rig.device->information().report.servo_cycles_longest + 1450 < board::servo_cycles);
+  // The memory of a set of shapes that contains only planes.
+  using control::Shapes;
+  constexpr std::size_t planes_bytes =
+      Shapes::planes_maximum * (sizeof(control::Plane) + sizeof(control::Surface) + sizeof(std::uint32_t));
+  CHECK(sizeof(control::LocalModel) <= planes_bytes);
   check_figure_on_cycles_page("contact stage with three touched planes", with_planes);
   check_figure_on_cycles_page("contact stage with three touched features", with_features);
+}
+
+TEST_CASE(
+    "with walls, 8 planes, 16 solids and a local model touched at once, the control interrupt ends within its period") {
+  BoardRig rig(device::SimulationMode::fast, 1, device::CyclePricing::conservative);
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.device->select_signals(std::array{Signal::stage_contact_cycles});
+  device::Shapes shapes = eight_planes(free_point_m, 8, 0.4f);
+  shapes.materials = {{800, 2, 0.4f, 0.2f, 0}};
+  const auto coordinate = [&](std::size_t axis) { return static_cast<float>(free_point_m[axis]); };
+  for (std::size_t i = 0; i < protocol::shape_solids_maximum; ++i) {
+    const auto angle_rad = 0.4f * static_cast<float>(i);
+    // Boxes and cylinders below the point. The point is 1 mm in each of them.
+    device::Solid solid{.kind = i % 2 == 0 ? protocol::SolidKind::box : protocol::SolidKind::cylinder,
+                        .centre_m = {coordinate(0), coordinate(1), coordinate(2) - 0.004f},
+                        .orientation = {std::cos(angle_rad), 0, 0, std::sin(angle_rad)},
+                        .size_m = {0.02f, 0.005f, 0.005f},
+                        .surface = {}};
+    solid.surface.life_s = 10;
+    shapes.solids.push_back(solid);
+  }
+  rig.device->place_shapes(shapes);
+  rig.set({{Parameter::box_minimum_z_m, coordinate(2) + 0.001f}, {Parameter::box_maximum_x_m, coordinate(0)}});
+  const float contact = contact_cycles(rig, three_features(free_point_m, true));
+  const auto longest = rig.device->information().report.servo_cycles_longest;
+  MESSAGE("simulation: contact stage ", contact, " cycles with all objects touched; longest control interrupt ",
+          longest, " of ", board::servo_cycles);
+  CHECK(longest < board::servo_cycles);
+  CHECK(rig.device->information().report.servo_overruns == 0);
+  check_figure_on_cycles_page("contact stage with all objects touched", contact);
 }
 
 TEST_CASE("the heat of a motor that presses against a wall follows its true current") {
