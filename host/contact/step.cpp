@@ -8,6 +8,7 @@
 
 #include "host/contact/features.hpp"
 #include "host/contact/half_spaces.hpp"
+#include "host/contact/selection.hpp"
 #include "host/contact/slide.hpp"
 #include "host/contact/solids.hpp"
 
@@ -20,6 +21,8 @@ constexpr double touch_m = 3e-6;
 /// and its normal turned by less than 60 degrees.
 constexpr double tracking_m = 0.0005;
 constexpr double tracking_cosine = 0.5;
+/// A smaller normal force does not show the proxy of the board.
+constexpr double force_min_N = 0.02;
 
 struct PlacedObjects {
   std::array<PlacedObject, objects_max> objects;
@@ -120,6 +123,44 @@ void follow_motion(PlacedObjects& placed, Tool& tool, LimitingFaces& limiting, d
   feel_only([](std::size_t) { return true; });
 }
 
+/// Material of the object that limited the last move, and the position to which its surface carries the proxy.
+struct Hold {
+  const Material* material = nullptr;
+  glm::dvec3 held_m;
+};
+
+Hold find_hold(const Scene& scene, const PlacedObjects& placed, const LimitingFaces& limiting, double age_s,
+               const glm::dvec3& before_m) {
+  if (limiting.count == 0) return {};
+  const std::size_t index = limiting.faces[0].object;
+  const PlacedObject& entry = placed.objects[index];
+  const Hold hold{&scene.materials[entry.object->material], before_m};
+  if (!entry.is_moving) return hold;
+  const Placement now = placement_after(*entry.object, age_s);
+  return {hold.material, now.to_workspace(placed.known[index]->placement.to_object(before_m))};
+}
+
+/// The proxy, held back by friction like the proxy of the board. The features at a proxy without friction would belong
+/// to another part of the surface. The force of the board shows its proxy, so that the two proxies do not drift apart.
+glm::dvec3 held_back_m(Tool& tool, Hold hold, const glm::dvec3& frictionless_m, const Pose& pose) {
+  const Material& material = *hold.material;
+  const glm::dvec3 out_m = frictionless_m - pose.position_m;
+  const double depth_m = glm::length(out_m);
+  if (!(depth_m > skin_m)) return frictionless_m;
+  const glm::dvec3 normal = out_m / depth_m;
+  if (material.stiffness_N_per_m > 0 && glm::dot(pose.force_N, normal) > force_min_N) {
+    const glm::dvec3 spring_N = pose.force_N + static_cast<double>(material.damping_Ns_per_m) * pose.velocity_m_per_s;
+    hold.held_m = pose.position_m + spring_N / static_cast<double>(material.stiffness_N_per_m);
+  }
+  glm::dvec3 lag_m = hold.held_m - frictionless_m;
+  lag_m -= normal * glm::dot(normal, lag_m);
+  const double length_m = glm::length(lag_m);
+  const auto bound_m = [&](float friction) { return static_cast<double>(friction) * depth_m; };
+  tool.slides = length_m > bound_m(tool.slides ? material.dynamic_friction : material.static_friction);
+  if (tool.slides) lag_m *= bound_m(material.dynamic_friction) / length_m;
+  return frictionless_m + lag_m;
+}
+
 std::uint32_t track(Tool& tool, const Candidate& candidate, std::uint32_t object, double moved_m,
                     std::array<bool, features_max>& is_used) {
   std::size_t best = features_max;
@@ -152,15 +193,17 @@ Step step(const Scene& scene, Tool& tool, const Pose& pose) {
   place_objects(placed, scene, tool, pose.scene_age_s, radius_m);
   LimitingFaces limiting = find_limiting(tool, placed);
   follow_motion(placed, tool, limiting, pose.scene_age_s, radius_m);
-  tool.proxy_m = slide(placed.all(), limiting, tool.proxy_m, pose.position_m, radius_m);
+  const glm::dvec3 start_m = tool.proxy_m;
+  tool.proxy_m = slide(placed.all(), limiting, start_m, pose.position_m, radius_m);
+  const Hold hold = find_hold(scene, placed, limiting, pose.scene_age_s, before_m);
+  if (hold.material != nullptr && hold.material->static_friction > 0)
+    tool.proxy_m = slide(placed.all(), limiting, start_m, held_back_m(tool, hold, tool.proxy_m, pose), radius_m);
   store_limiting(tool, placed, limiting);
   store_objects(tool, placed, pose.scene_age_s);
 
   Step result;
   result.proxy_m = tool.proxy_m;
-  const double speed_m_per_s = glm::length(pose.velocity_m_per_s);
-  const Candidates candidates =
-      find_candidates(placed.all(), tool.proxy_m, radius_m, look_ahead_m + look_ahead_s * speed_m_per_s);
+  const Candidates candidates = select_features(placed.all(), limiting, pose, tool.proxy_m, radius_m);
   const double moved_m = glm::distance(before_m, tool.proxy_m);
 
   LocalModel& model = result.model;

@@ -22,6 +22,7 @@ inline constexpr double look_ahead_m = 0.002;
 struct Pose {
   glm::dvec3 position_m{};
   glm::dvec3 velocity_m_per_s{};
+  glm::dvec3 force_N{};  ///< of the board on the hand, without a limit; 0: not known
   std::uint32_t sequence = 0;
   double scene_age_s = 0;  ///< time since the placements of the scene were valid
 };
@@ -68,6 +69,7 @@ struct Tool {
   double radius_m = tip_radius_min_m;
   bool is_placed = false;  ///< set by the first step. Reset it to place the proxy at the hand
   glm::dvec3 proxy_m{};
+  bool slides = false;  ///< the friction is dynamic
 
   struct TrackedFeature {
     std::uint32_t id, object;

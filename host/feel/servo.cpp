@@ -131,6 +131,7 @@ std::optional<device::LocalModel> Servo::step(const device::DrivenPose& driven) 
   newest_step_ = contact::step(scene_, tool_,
                                {.position_m = position_m,
                                 .velocity_m_per_s = {velocity_m_s[0], velocity_m_s[1], velocity_m_s[2]},
+                                .force_N = pose.limits == 0 ? vector_of(pose.force_N) : glm::dvec3{},
                                 .sequence = static_cast<std::uint32_t>(pose.sequence)});
   counters_.longest_step_s =
       std::max(counters_.longest_step_s, std::chrono::duration<double>(Clock::now() - begin).count());

@@ -34,6 +34,11 @@ struct ServoRig {
     pose.time_periods += protocol::servo_rate_Hz / 1000;
     return servo.step({pose, parameters, revision, pose.sequence == 1, is_newest});
   }
+  /// Ten poses at this height, so that the measured velocity is 0.
+  std::optional<device::LocalModel> rest_at(double height_m) {
+    for (int pose_number = 1; pose_number < 10; ++pose_number) at(height_m);
+    return at(height_m);
+  }
   void press_button(bool is_pressed) {
     pose.switches = is_pressed ? static_cast<std::uint8_t>(protocol::Switch::button_1) : 0;
   }
@@ -50,7 +55,7 @@ struct ServoRig {
 TEST_CASE("the servo returns a model near an object, one empty model behind it, and none in free space") {
   ServoRig rig;
   CHECK_FALSE(rig.at(0.06));
-  const auto model = rig.at(0.034);
+  const auto model = rig.rest_at(0.034);
   REQUIRE(model);
   REQUIRE(model->count == 1);
   CHECK(model->features[0].kind == protocol::FeatureKind::sphere);
@@ -61,7 +66,7 @@ TEST_CASE("the servo returns a model near an object, one empty model behind it, 
   CHECK(view.contacts[0].object == ball);
   CHECK(view.contacts[0].depth_m == doctest::Approx(0.001).epsilon(1e-3));
   CHECK(view.contacts[0].normal.z == doctest::Approx(1));
-  CHECK(view.counters.steps == 2);
+  CHECK(view.counters.steps == 11);
   const auto empty = rig.at(0.06);
   REQUIRE(empty);
   CHECK(empty->count == 0);
@@ -88,6 +93,28 @@ TEST_CASE("the servo answers only the newest of several poses, and none without 
   CHECK(rig.servo.view().contact_count == 0);
 }
 
+TEST_CASE("with friction, the model belongs to the proxy of the board, which a force without a limit shows") {
+  ServoRig rig;
+  auto scene = std::make_shared<contact::Scene>();
+  scene->objects.push_back({.id = ball, .shape = contact::Plane{}});
+  scene->materials[0] = {.stiffness_N_per_m = 500, .static_friction = 1, .dynamic_friction = 1};
+  rig.publication.publish(scene);
+  rig.at(0.02);
+  rig.at(0.004);
+  rig.pose.force_N[0] = 0.2f;
+  rig.pose.force_N[2] = 0.5f;
+  double proxy_m = 0.0004;
+  SUBCASE("without a limit") {}
+  SUBCASE("with a limit") {
+    rig.pose.limits = static_cast<std::uint8_t>(protocol::Limit::force);
+    proxy_m = 0;
+  }
+  rig.at(0.004);
+  const feel::ServoView view = rig.servo.view();
+  REQUIRE(view.contact_count == 1);
+  CHECK(view.contacts[0].point_m.x == doctest::Approx(proxy_m).scale(1).epsilon(1e-6));
+}
+
 TEST_CASE("a hand in the object is free when the force is switched on, until it has left the object") {
   ServoRig rig;
   rig.pose.state = protocol::State::ready;
@@ -108,7 +135,7 @@ TEST_CASE("the tip has the radius of the parameter, and at least half a millimet
   SUBCASE("after a change") { ++rig.revision; }
   SUBCASE("of another device") { rig.pose.sequence = 0; }
   rig.at(0.06);
-  const auto model = rig.at(0.0304);
+  const auto model = rig.rest_at(0.0304);
   REQUIRE(model);
   CHECK(model->features[0].radius_m == doctest::Approx(ball_radius_m + contact::tip_radius_min_m));
 }
