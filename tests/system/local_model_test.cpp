@@ -119,22 +119,26 @@ TEST_CASE("stale and malformed local models are refused and counted, and move no
   CHECK(length(rig.seen.back().force_N) == 0);
 }
 
-TEST_CASE("the third pose after a pose shows the model that was made from that pose") {
+TEST_CASE("99 % of the models act before the third pose after their pose") {
   ModelRig rig;
   for (int i = 0; i < 10; ++i) rig.millisecond();
+  const auto is_felt = [](const device::Pose& pose) {
+    return protocol::is_felt(pose.force_sources, ForceSource::shapes);
+  };
   int in_time = 0;
-  constexpr int models = 20;
+  constexpr int models = 100;
   for (int i = 0; i < models; ++i) {
-    const std::uint32_t sequence = rig.seen.back().sequence;
+    const auto sequence = rig.seen.back().sequence;
     rig.send(rig.floor(0.002));
-    rig.send(rig.floor(0.002));
-    for (int k = 0; k < 60; ++k) rig.millisecond();  // the model expires
-    const auto felt = std::ranges::find_if(rig.seen, [&](const auto& pose) {
-      return pose.sequence > sequence && protocol::is_felt(pose.force_sources, ForceSource::shapes);
-    });
+    for (int k = 0; k < 5; ++k) rig.millisecond();
+    const auto felt =
+        std::ranges::find_if(rig.seen, [&](const auto& pose) { return pose.sequence > sequence && is_felt(pose); });
     in_time += felt != rig.seen.end() && felt->sequence <= sequence + 3 ? 1 : 0;
+    rig.send({});
+    for (int k = 0; k < 5; ++k) rig.millisecond();
+    REQUIRE(!is_felt(rig.seen.back()));
   }
-  CHECK(in_time == models);
+  CHECK(in_time * 100 >= 99 * models);
 }
 
 }  // namespace
