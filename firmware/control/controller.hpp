@@ -121,8 +121,6 @@ class Controller {
   /// Motor heat for start_warm() in the next run.
   Warmth warmth() const { return {heat_.heat, heat_.housing, heat_.too_hot ? 1u : 0u}; }
   bool force_is_on() const { return force_is_on_; }  ///< according to the state
-  /// Position that the tip would have if the touched objects were rigid.
-  const Vector3& proxy_m() const { return touch_.proxy_m(); }
 
  private:
   enum Stage : std::uint8_t { sample, pose, contact, torque, current, report, stage_count };

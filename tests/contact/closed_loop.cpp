@@ -120,7 +120,7 @@ control::Samples ClosedLoop::read_samples() {
 
 // The duty cycles act one period after their computation.
 void ClosedLoop::step_board() {
-  if (const auto* shapes = requests_.take_shapes()) controller_.replace_shapes(*shapes);
+  if (auto* shapes = requests_.take_shapes()) controller_.replace_shapes(*shapes);
   if (auto* model = requests_.take_local_model()) {
     controller_.follow(*model);
     ++models_received_;
@@ -130,6 +130,7 @@ void ClosedLoop::step_board() {
   tests::FakeClock clock;
   drive_ = controller_.step(read_samples(), settings_, clock);
   controller_.finish(clock);
+  requests_.note_proxy(controller_.proxy_m());
   controller_.write_signals(signals_);
   plant_.set_enable(drive_.enabled);
   constexpr double period_s = 1.0 / protocol::servo_rate_Hz;
