@@ -98,7 +98,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
                     .periods = period,
                     .begin_cycles = begin_cycles};
   host_link.samples.record();
-  host_link.program.note_proxy(controller.proxy_m());
+  host_link.program.note_proxy(controller.proxy_m(), controller.depth_m());
   host_link.poses.note_load(controller.servo_cycles());
   controller.finish(clock);
 

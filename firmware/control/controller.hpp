@@ -82,6 +82,8 @@ class Controller {
   void follow(LocalModel& model) { touch_.follow(model); }
   /// Position of the proxy after the last step.
   const Vector3& proxy_m() const { return touch_.proxy_m(); }
+  /// Sum of the depths of the probe in the surfaces that it touched in the last step.
+  float depth_m() const { return touch_.depth_m(); }
   /// Requests the state `update`. Call this function in each period until the boot loader starts.
   void leave_for_update() { pending_.events |= protocol::events(protocol::Event::update); }
   /// Reports faults found outside the signal path. The faults switch the bridges off in the next step.

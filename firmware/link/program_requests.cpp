@@ -79,17 +79,11 @@ bool decode_plane(const protocol::PlaneEntry& entry, control::Plane& plane) {
   return true;
 }
 
-/// Sets the distance from the center beyond which a proxy is not near the solid.
-void set_reach(control::Solid& solid, float core_m) {
-  const float reach_m = core_m + solid.radius_m + control::near_margin_m;
-  solid.reach_squared_m2 = reach_m * reach_m;
-}
-
 bool decode_sphere(const protocol::SphereEntry& entry, control::Solid& solid) {
   const float limit = protocol::shape_distance_maximum_m;
   if (!is_valid(entry.centre_m, limit) || !(entry.radius_m > 0.0f && entry.radius_m <= limit)) return false;
   solid = {.core = Core::point, .centre_m = vector_of(entry.centre_m), .radius_m = entry.radius_m};
-  set_reach(solid, 0.0f);
+  solid.extent_m = solid.radius_m;
   return true;
 }
 
@@ -127,26 +121,26 @@ bool decode_solid(const protocol::SolidEntry& entry, control::Solid& solid) {
   switch (entry.kind) {
     case SolidKind::sphere:
       solid.core = Core::point;
-      set_reach(solid, 0.0f);
+      solid.extent_m = solid.radius_m;
       break;
     case SolidKind::capsule:
       solid.core = Core::segment;
       solid.half_m = {second_m};
-      set_reach(solid, second_m);
+      solid.extent_m = second_m + solid.radius_m;
       break;
     case SolidKind::cylinder:
       solid.core = Core::cylinder;
       solid.half_m = {second_m - rounding_m};
       solid.core_radius_m = first_m - rounding_m;
       solid.radius_m = rounding_m;
-      set_reach(solid, std::sqrt(first_m * first_m + second_m * second_m));
+      solid.extent_m = std::sqrt(first_m * first_m + second_m * second_m);
       break;
     case SolidKind::box:
       solid.core = Core::box;
       solid.axes = axes;
       solid.half_m = {first_m - rounding_m, second_m - rounding_m, third_m - rounding_m};
       solid.radius_m = rounding_m;
-      set_reach(solid, std::sqrt(first_m * first_m + second_m * second_m + third_m * third_m));
+      solid.extent_m = std::sqrt(first_m * first_m + second_m * second_m + third_m * third_m);
       break;
   }
   return true;
@@ -367,7 +361,7 @@ protocol::RequestResult ProgramRequests::accept_shapes(std::span<const std::byte
   control::Shapes* next = shapes_.next();
   if (next == nullptr) return protocol::RequestResult::busy;
   if (!decode_shapes(report, *next, materials_)) return protocol::RequestResult::malformed;
-  find_tangents(*next, proxy_m());
+  find_tangents(*next, proxy_m(), control::near_margin_m + 2.0f * depth_m_.load());
   shapes_.offer();
   return protocol::RequestResult::accepted;
 }

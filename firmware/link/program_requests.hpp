@@ -67,8 +67,10 @@ class ProgramRequests {
 
   // ---- control interrupt ----
 
-  /// Notes the position of the proxy, from which the main loop finds the first tangent planes.
-  void note_proxy(const control::Vector3& proxy_m) {
+  /// Notes the position of the proxy and the depth of the probe, from which the main loop finds the first tangent
+  /// planes.
+  void note_proxy(const control::Vector3& proxy_m, float depth_m) {
+    depth_m_.store(depth_m);
     proxy_x_m_.store(proxy_m.x);
     proxy_y_m_.store(proxy_m.y);
     proxy_z_m_.store(proxy_m.z);
@@ -91,6 +93,7 @@ class ProgramRequests {
   Shared<float> proxy_x_m_{0.0f};
   Shared<float> proxy_y_m_{0.0f};
   Shared<float> proxy_z_m_{0.0f};
+  Shared<float> depth_m_{0.0f};
   Materials materials_{};
   std::uint32_t forces_received_ = 0;
   std::uint32_t forces_lost_ = 0;

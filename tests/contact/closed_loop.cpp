@@ -130,7 +130,7 @@ void ClosedLoop::step_board() {
   tests::FakeClock clock;
   drive_ = controller_.step(read_samples(), settings_, clock);
   controller_.finish(clock);
-  requests_.note_proxy(controller_.proxy_m());
+  requests_.note_proxy(controller_.proxy_m(), controller_.depth_m());
   controller_.write_signals(signals_);
   plant_.set_enable(drive_.enabled);
   constexpr double period_s = 1.0 / protocol::servo_rate_Hz;

@@ -23,19 +23,25 @@ bool LivingShapes::age() {
   return true;
 }
 
-void LivingShapes::examine(const Vector3& proxy_m) {
-  examine_next(waiting_solids_, near_ & ~Shapes::all_planes, proxy_m);
-  examine_next(waiting_, living_ & (Shapes::all_planes | ~near_), proxy_m);
+void LivingShapes::examine(const Vector3& proxy_m, float margin_m) {
+  examine_next(above_solid_, near_ & ~Shapes::all_planes, proxy_m, margin_m);
+  examine_next(above_, living_ & (Shapes::all_planes | ~near_), proxy_m, margin_m);
 }
 
-void LivingShapes::examine_next(std::uint32_t& waiting, std::uint32_t among, const Vector3& proxy_m) {
-  waiting &= among;
-  if (waiting == 0) waiting = among;
-  if (waiting == 0) return;
-  const auto number = static_cast<std::size_t>(std::countr_zero(waiting));
+bool LivingShapes::renew(std::size_t number, const Vector3& proxy_m, float margin_m) {
   const std::uint32_t bit = 1u << number;
-  waiting &= ~bit;
-  near_ = is_near(*shapes_, number, proxy_m) ? near_ | bit : near_ & ~bit;
+  near_ &= ~bit;
+  if (!is_near(*shapes_, number, proxy_m, margin_m)) return false;
+  near_ |= bit;
+  return true;
+}
+
+void LivingShapes::examine_next(std::uint32_t& above, std::uint32_t among, const Vector3& proxy_m, float margin_m) {
+  if (among == 0) return;
+  const std::uint32_t later = among & above;
+  const auto number = static_cast<std::size_t>(std::countr_zero(later != 0 ? later : among));
+  above = ~1u << number;
+  renew(number, proxy_m, margin_m);
 }
 
 }  // namespace inkwell::control

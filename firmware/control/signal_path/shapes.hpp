@@ -32,23 +32,23 @@ struct Shapes {
   std::uint32_t near = 0;  ///< one bit per shape within the margin of the proxy
 };
 
-/// Renews the tangent plane of a shape. Returns true if the shape is within near_margin_m of the proxy.
-inline bool is_near(Shapes& shapes, std::size_t number, const Vector3& proxy_m) {
+/// Renews the tangent plane of a shape. Returns true if the shape is within `margin_m` of the proxy.
+inline bool is_near(Shapes& shapes, std::size_t number, const Vector3& proxy_m, float margin_m) {
   Plane& plane = shapes.planes[number];
   if (number >= Shapes::planes_maximum)
-    return find_tangent(shapes.solids[number - Shapes::planes_maximum], proxy_m, plane);
-  return dot(plane.normal, proxy_m) - plane.offset_m < near_margin_m;
+    return find_tangent(shapes.solids[number - Shapes::planes_maximum], proxy_m, margin_m, plane);
+  return dot(plane.normal, proxy_m) - plane.offset_m < margin_m;
 }
 
 /// Sets `used`, `near` and the tangent planes of a new set from its other members. This function is inline, because
 /// code of the main loop must not be in the interrupt memory.
-inline void find_tangents(Shapes& shapes, const Vector3& proxy_m) {
+inline void find_tangents(Shapes& shapes, const Vector3& proxy_m, float margin_m = near_margin_m) {
   shapes.used = 0;
   shapes.near = 0;
   for (std::size_t i = 0; i < Shapes::maximum; ++i) {
     if (shapes.life_periods[i] == 0) continue;
     shapes.used |= 1u << i;
-    if (is_near(shapes, i, proxy_m)) shapes.near |= 1u << i;
+    if (is_near(shapes, i, proxy_m, margin_m)) shapes.near |= 1u << i;
   }
 }
 
@@ -62,7 +62,9 @@ class LivingShapes {
   bool age();
 
   /// Examines two shapes in turn: a solid near the proxy, whose tangent plane is renewed, and one of the other shapes.
-  void examine(const Vector3& proxy_m);
+  void examine(const Vector3& proxy_m, float margin_m = near_margin_m);
+  /// Examines a shape. Returns true if the shape is near the proxy.
+  bool renew(std::size_t number, const Vector3& proxy_m, float margin_m);
 
   bool any() const { return living_ != 0; }
   /// Shapes near the proxy, one bit per shape number.
@@ -71,15 +73,15 @@ class LivingShapes {
   const Surface& surface(std::size_t number) const { return shapes_->surfaces[number]; }
 
  private:
-  void examine_next(std::uint32_t& waiting, std::uint32_t among, const Vector3& proxy_m);
+  void examine_next(std::uint32_t& above, std::uint32_t among, const Vector3& proxy_m, float margin_m);
 
   Shapes* shapes_ = nullptr;
   std::uint32_t age_periods_ = 0;
-  std::uint32_t living_ = 0;          ///< one bit per shape number
-  std::uint32_t near_ = 0;            ///< living shapes near the proxy
-  std::uint32_t waiting_solids_ = 0;  ///< near solids that wait for their turn
-  std::uint32_t waiting_ = 0;         ///< other shapes that wait for their turn
-  std::uint32_t aged_ = 0;            ///< number of the shape whose life was examined last
+  std::uint32_t living_ = 0;       ///< one bit per shape number
+  std::uint32_t near_ = 0;         ///< living shapes near the proxy
+  std::uint32_t above_solid_ = 0;  ///< one bit per shape above the near solid that was examined last
+  std::uint32_t above_ = 0;        ///< the same for the other shapes
+  std::uint32_t aged_ = 0;         ///< number of the shape whose life was examined last
 };
 
 static_assert(Shapes::maximum <= 32, "LivingShapes has one bit per shape");

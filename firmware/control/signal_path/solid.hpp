@@ -15,7 +15,8 @@ struct Plane {
 };
 
 /// Shapes at a larger distance from the proxy are examined in turn. Until the next examination, at most 25 periods
-/// later, a proxy at 2 m/s moves less.
+/// later, a proxy at 2 m/s moves less. A proxy that loses its support moves by its depth, so the depth increases the
+/// margin.
 inline constexpr float near_margin_m = 0.003f;
 
 /// Distances from a core below 0.1 um give no reliable direction.
@@ -34,7 +35,7 @@ struct Solid {
   std::array<float, 3> half_m{};  ///< half lengths of the core along the axes
   float core_radius_m = 0.0f;     ///< of the core of a cylinder
   float radius_m = 0.0f;          ///< radius, or rounding of the edges
-  float reach_squared_m2 = 0.0f;  ///< a proxy at a larger distance from `centre_m` does not touch the solid
+  float extent_m = 0.0f;          ///< distance from `centre_m` to the farthest point of the solid
 };
 
 /// Relation of a point to the surface of a solid.
@@ -46,8 +47,8 @@ struct Foot {
 /// Returns false if the solid has no normal at the point, because the point is in the core.
 bool find_foot(const Solid& solid, const Vector3& point_m, Foot& foot);
 
-/// Sets the tangent plane at the foot of a point. Returns false if the point is farther than near_margin_m from the
-/// solid, or in the core.
-bool find_tangent(const Solid& solid, const Vector3& point_m, Plane& tangent);
+/// Sets the tangent plane at the foot of a point. Returns false if the point is farther than `margin_m` from the solid,
+/// or in the core.
+bool find_tangent(const Solid& solid, const Vector3& point_m, float margin_m, Plane& tangent);
 
 }  // namespace inkwell::control

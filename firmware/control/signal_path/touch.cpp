@@ -39,7 +39,7 @@ const Barrier* deepest(const Barriers& barriers, const Vector3& out_m) {
   return found;
 }
 
-void set_one(Support& support, const Barrier& a) {
+[[gnu::noinline]] void set_one(Support& support, const Barrier& a) {
   support.count = 0;
   support.add(a, a.depth_m);
   support.out_m = a.depth_m * a.normal;
@@ -66,7 +66,7 @@ void set_three(Support& support, const Barrier& a, const Barrier& b, const Barri
   const Vector3 bc = cross(b.normal, c.normal), ca = cross(c.normal, a.normal), ab = cross(a.normal, b.normal);
   const float volume = dot(a.normal, bc);
   if (volume * volume > flat_sine_squared) {
-    const float per_volume = volume > 0.0f ? reciprocal(volume) : -reciprocal(-volume);
+    const float per_volume = volume * reciprocal(volume * volume);
     const Vector3 corner_m = per_volume * (a.depth_m * bc + b.depth_m * ca + c.depth_m * ab);
     const float a_m = per_volume * dot(corner_m, bc), b_m = per_volume * dot(corner_m, ca);
     if (a_m > 0.0f && b_m > 0.0f) {
@@ -117,18 +117,24 @@ constexpr float smallest_squared_N2 = 1e-12f;
 Tangential friction(const Surface& surface, const Vector3& lag_m, const Vector3& velocity_m_per_s, float normal_N,
                     bool slides) {
   const Vector3 held_N = surface.stiffness_N_per_m * lag_m - surface.damping_Ns_per_m * velocity_m_per_s;
-  const float held_squared_N2 = dot(held_N, held_N);
   const float bound_N = normal_N * (slides ? surface.dynamic_friction : surface.static_friction);
-  if (held_squared_N2 <= bound_N * bound_N || held_squared_N2 <= smallest_squared_N2) return {held_N, lag_m, false};
-  const Vector3 sliding_N = (surface.dynamic_friction * normal_N * reciprocal_square_root(held_squared_N2)) * held_N;
+  if (dot(held_N, held_N) <= bound_N * bound_N) return {held_N, lag_m, false};
+  const Vector3 sliding_N = bounded(held_N, surface.dynamic_friction * normal_N).force_N;
   return {sliding_N, surface.m_per_N * sliding_N, true};
 }
 
-[[gnu::cold]] Vector3 viscous_force_N(const Surface& surface, const Vector3& velocity_m_per_s, float normal_N) {
-  const Vector3 force_N = -surface.viscosity_Ns_per_m * velocity_m_per_s;
-  const float squared_N2 = dot(force_N, force_N);
-  if (squared_N2 <= normal_N * normal_N || squared_N2 <= smallest_squared_N2) return force_N;
-  return (normal_N * reciprocal_square_root(squared_N2)) * force_N;
+/// Moves a point, which friction has displaced, out of the barriers. `point_m` is relative to the probe.
+Vector3 in_free_space_m(const Barriers& barriers, Vector3 point_m) {
+  for (std::size_t i = 0; i < barriers.count; ++i) {
+    const Barrier& barrier = barriers.list[i];
+    const float depth_m = depth_at(barrier, point_m);
+    if (depth_m > 0.0f) point_m = point_m + depth_m * barrier.normal;
+  }
+  return point_m;
+}
+
+Vector3 viscous_force_N(const Surface& surface, const Vector3& velocity_m_per_s, float normal_N) {
+  return bounded(-surface.viscosity_Ns_per_m * velocity_m_per_s, normal_N).force_N;
 }
 
 }  // namespace
@@ -150,6 +156,7 @@ void find_support(const Barriers& barriers, Support& support) {
 }
 
 void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
+  if (count == maximum) return;
   Barrier& barrier = list[count++];
   barrier.normal.x = normal.x;
   barrier.normal.y = normal.y;
@@ -202,16 +209,21 @@ void Touch::add_walls(const Vector3& probe_m, const Box& walls, const Surface& w
 }
 
 void Touch::add_shapes(const Vector3& probe_m) {
-  shapes.examine(proxy_m_);
-  const Vector3 at_m = probe_m;
   const float height_m = -barriers_.reach_m;
+  const float margin_m = near_margin_m - 2.0f * height_m;
+  shapes.examine(proxy_m_, margin_m);
+  const Vector3 at_m = probe_m;
   std::uint32_t near = shapes.near();
   for (std::size_t i = 0; i < Shapes::maximum && near != 0 && barriers_.count < Barriers::maximum; ++i) {
     const auto number = static_cast<std::size_t>(std::countr_zero(near));
     const Plane& plane = shapes.plane(number);
-    const float depth_m = plane.offset_m - dot(plane.normal, at_m);
-    if (depth_m > height_m) barriers_.add(plane.normal, depth_m, shapes.surface(number), still);
+    float depth_m = plane.offset_m - dot(plane.normal, at_m);
     near &= near - 1;
+    if (!(depth_m > height_m)) continue;
+    // A touch does not begin at a tangent plane of another position.
+    if (!touches_)
+      depth_m = shapes.renew(number, proxy_m_, margin_m) ? plane.offset_m - dot(plane.normal, at_m) : -1.0f;
+    barriers_.add(plane.normal, depth_m, shapes.surface(number), still);
   }
 }
 
@@ -297,7 +309,7 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   if (surface.static_friction != 0.0f) {
     const Tangential held = friction(surface, tangential(held_m - frictionless_m), sideways_m_per_s, normal_N, slides_);
     slides_ = held.slides;
-    proxy_m_ = frictionless_m + held.lag_m;
+    proxy_m_ = probe_m + in_free_space_m(barriers_, support.out_m + held.lag_m);
     main_N = main_N + held.force_N;
   }
   if (surface.viscosity_Ns_per_m != 0.0f) main_N = main_N + viscous_force_N(surface, sideways_m_per_s, normal_N);

@@ -38,7 +38,7 @@ inline constexpr float depth_tolerance_m = 1e-7f;
 
 /// Barriers of one period. Further barriers are ignored.
 struct Barriers {
-  static constexpr std::size_t maximum = 10;
+  static constexpr std::size_t maximum = 12;
 
   std::array<Barrier, maximum> list{};
   std::size_t count = 0;
@@ -52,7 +52,7 @@ struct Barriers {
     deepest = nullptr;
     deepest_m = depth_tolerance_m;
   }
-  bool is_in_reach(float depth_m) const { return depth_m > -reach_m && count < maximum; }
+  bool is_in_reach(float depth_m) const { return depth_m > -reach_m; }
   void add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion);
 };
 
@@ -69,8 +69,8 @@ struct Support {
   }
 };
 
-/// Finds the point nearest to the probe that no barrier excludes. At least one barrier must exclude the probe. Barriers within 0.2 degrees of parallel count as one
-/// barrier.
+/// Finds the point nearest to the probe that no barrier excludes. At least one barrier must exclude the probe. Barriers
+/// within 0.2 degrees of parallel count as one barrier.
 void find_support(const Barriers& barriers, Support& support);
 
 /// Force on the hand.
@@ -85,7 +85,7 @@ class Touch {
   LivingShapes shapes;
 
   /// Activates a new model with tangent planes. The board changes the model in each period until the next call.
-  void follow(LocalModel& model);
+  [[gnu::cold]] void follow(LocalModel& model);
   /// Advances the objects by one period. Returns true if an object has expired.
   bool age();
   /// Returns true if there are shapes or features of a local model.
@@ -110,6 +110,8 @@ class Touch {
 
   /// Position of the proxy after the last period.
   const Vector3& proxy_m() const { return proxy_m_; }
+  /// Sum of the depths of the probe in the surfaces that support the proxy.
+  float depth_m() const { return barriers_.reach_m; }
   bool slides() const { return slides_; }
 
  private:

@@ -49,7 +49,7 @@ void put_plane(Shapes& shapes, std::size_t number, const Vector3& normal, float 
 }
 
 void put_solid(Shapes& shapes, std::size_t number, Solid solid, const Surface& surface) {
-  solid.reach_squared_m2 = 1.0f;
+  solid.extent_m = 1.0f;
   shapes.solids[number] = solid;
   shapes.surfaces[Shapes::planes_maximum + number] = surface;
   shapes.life_periods[Shapes::planes_maximum + number] = Shapes::lasting;
@@ -206,6 +206,75 @@ TEST_CASE("a sphere among sixteen other solids in reach is felt as one sphere, a
     CHECK(length(force_N) == doctest::Approx(2.0f).epsilon(5e-3));
     CHECK(dot(force_N, out) == doctest::Approx(2.0f).epsilon(5e-3));
   }
+}
+
+TEST_CASE("objects that the hand passed while the force was off do not push") {
+  Hand hand;
+  put_solid(hand.shapes, 0, {.core = Core::point, .centre_m = {0.0f, 0.03f, 0.0f}, .radius_m = 0.005f}, smooth);
+  put_solid(hand.shapes, 1,
+            {.core = Core::box,
+             .centre_m = {0.0f, 0.0f, -0.01f},
+             .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up},
+             .half_m = {0.05f, 0.05f, 0.0095f},
+             .radius_m = 5e-4f},
+            smooth);
+  hand.at({0.0f, 0.03f, 0.006f});
+  hand.place();
+  hand.at({0.0f, 0.03f, 0.006f});
+  for (int i = 0; i < 100; ++i) hand.touch.release({0.0f, 0.03f, -0.05f});
+  for (int i = 0; i < 100; ++i) CHECK(hand.at({0.0f, 0.03f, -0.05f}) == Vector3{});
+  CHECK(hand.touch.proxy_m().z == -0.05f);
+}
+
+TEST_CASE("a probe that slides off a soft object is caught by the object below") {
+  Surface soft = smooth;
+  soft.stiffness_N_per_m = 120.0f;
+  soft.m_per_N = 1.0f / 120.0f;
+  Surface hard = smooth;
+  hard.stiffness_N_per_m = 3000.0f;
+  hard.m_per_N = 1.0f / 3000.0f;
+  const auto box = [](float x_m, float top_m, float half_height_m) {
+    return Solid{.core = Core::box,
+                 .centre_m = {x_m, 0.0f, top_m - half_height_m},
+                 .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up},
+                 .half_m = {0.0295f, 0.0295f, half_height_m - 5e-4f},
+                 .radius_m = 5e-4f};
+  };
+  Hand hand;
+  put_solid(hand.shapes, 0, box(-0.03f, 0.017f, 0.008f), soft);
+  put_solid(hand.shapes, 1, box(0.02f, 0.0f, 0.001f), hard);
+  for (std::size_t i = 2; i < Shapes::solids_maximum; ++i)
+    put_solid(hand.shapes, i, {.core = Core::point, .centre_m = {0.0f, 0.5f, 0.0f}, .radius_m = 0.01f}, smooth);
+  hand.at({-0.01f, 0.0f, 0.02f});
+  hand.place();
+  hand.move_to({-0.01f, 0.0f, -0.0013f});
+  hand.move_to({0.01f, 0.0f, -0.0013f});
+  CHECK(hand.at(hand.probe_m).z == doctest::Approx(3.9f).epsilon(1e-2));
+}
+
+TEST_CASE("a probe between ten posts is pushed out of the table below") {
+  Hand hand;
+  for (std::size_t i = 0; i < 10; ++i) {
+    const float angle_rad = 0.6283f * static_cast<float>(i);
+    put_solid(hand.shapes, i,
+              {.core = Core::segment,
+               .centre_m = {0.0035f * std::cos(angle_rad), 0.0035f * std::sin(angle_rad), 0.0f},
+               .axes = {up},
+               .half_m = {0.02f},
+               .radius_m = 0.001f},
+              smooth);
+  }
+  put_solid(hand.shapes, 16,
+            {.core = Core::box,
+             .centre_m = {0.0f, 0.0f, -0.01f},
+             .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up},
+             .half_m = {0.05f, 0.05f, 0.0095f},
+             .radius_m = 5e-4f},
+            smooth);
+  hand.at({0.0f, 0.0f, 0.001f});
+  hand.place();
+  hand.move_to({0.0f, 0.0f, -0.003f});
+  for (int i = 0; i < 20; ++i) CHECK(hand.at(hand.probe_m).z == doctest::Approx(3.0f).epsilon(1e-2));
 }
 
 TEST_CASE("a probe that is pushed through the middle of a solid is still pushed back to its entry") {
@@ -456,6 +525,52 @@ TEST_CASE("a moving surface carries the hand and its friction along at the servo
   for (int period = 1; period <= 40; ++period) force_N = step(touch, stopped_m).objects_N;
   CHECK(force_N.z == doctest::Approx(0.7f + 0.1f).epsilon(0.02));
   CHECK(force_N.x == doctest::Approx(0.4f + 0.2f).epsilon(0.05));
+}
+
+TEST_CASE("with friction, a probe in a corner of two surfaces stays out of both while models are exchanged") {
+  Surface surface = rough(1.0f, 1.0f);
+  surface.stiffness_N_per_m = 500.0f;
+  surface.m_per_N = 1.0f / 500.0f;
+  Touch touch;
+  LocalModel models[2];
+  Vector3 probe_m{0.01f, 0.0f, 0.001f}, force_N;
+  for (int period = 0; period < 4000; ++period) {
+    if (period % 20 == 0) {
+      LocalModel& model = models[period / 20 % 2];
+      model = model_of({plane_feature(up, 0.0f, surface), plane_feature({1, 0, 0}, 0.0f, surface)});
+      follow(touch, model);
+    }
+    if (period < 400)
+      probe_m.z -= 1.5e-5f;
+    else if (period < 3400)
+      probe_m.x -= 8.33e-6f;
+    force_N = step(touch, probe_m).objects_N;
+    CHECK(touch.proxy_m().x > -1e-5f);
+    if (period > 100) CHECK(touch.proxy_m().z > -1e-5f);
+  }
+  CHECK(force_N.z > 2.0f);
+  CHECK(force_N.x > 5.0f);
+}
+
+TEST_CASE("a probe that slides around a sphere, a cylinder and a plane of one model feels their radial depth") {
+  Touch touch;
+  control::Feature sphere = plane_feature({1, 0, 0}, 0.0f, smooth);
+  sphere.kind = FeatureKind::sphere;
+  sphere.radius_m = 0.02f;
+  control::Feature cylinder = plane_feature({0, 1, 0}, 0.0f, smooth);
+  cylinder.kind = FeatureKind::cylinder;
+  cylinder.radius_m = 0.02f;
+  LocalModel model = model_of({sphere, cylinder, plane_feature(up, -0.5f, smooth)});
+  step(touch, {0.0f, 0.0f, 0.021f});
+  follow(touch, model);
+  for (int i = 0; i <= 2000; ++i) {
+    const float angle_rad = 1e-3f * static_cast<float>(i);
+    const Vector3 out{std::sin(angle_rad), 0.0f, std::cos(angle_rad)};
+    const Vector3 force_N = step(touch, 0.018f * out).objects_N;
+    if (i < 400) continue;
+    CHECK(length(force_N) == doctest::Approx(2.0f).epsilon(5e-3));
+    CHECK(dot(force_N, out) == doctest::Approx(2.0f).epsilon(5e-3));
+  }
 }
 
 TEST_CASE("a local model expires after its life") {
