@@ -61,7 +61,7 @@ TEST_CASE("a bit flip in the code or vectors of interrupts switches the force of
   // error before the error has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t addresses[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
-                                     firmware_symbol("remove_idle_torque"), firmware_symbol("nowhere")};
+                                     firmware_symbol("remove_idle_torque"), firmware_symbol("wall_normals")};
   for (const std::uint32_t address : addresses) {
     CAPTURE(address);
     check_found_and_written_anew({address}, 7);
