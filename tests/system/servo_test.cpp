@@ -123,7 +123,7 @@ device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched,
 }  // namespace
 
 TEST_CASE(
-    "in the longest control interrupt, checks execute at most 300 instructions, or 420 with a state change, and "
+    "in the longest control interrupt, checks execute at most 310 instructions, or 430 with a state change, and "
     "voltage bounds at most 100") {
   const auto profile = std::filesystem::temp_directory_path() / fmt::format("inkwell-checks-{}", getpid());
   {
@@ -178,7 +178,7 @@ TEST_CASE(
   CHECK(current_jumps > 10);
   CHECK(heat > 10);
   // A limit may change its state during the longest interrupt.
-  CHECK(checking + heartbeat + jumps + current_jumps + heat + change_of_state <= (change_of_state > 0 ? 420 : 300));
+  CHECK(checking + heartbeat + jumps + current_jumps + heat + change_of_state <= (change_of_state > 0 ? 430 : 310));
   CHECK(bounds > 10);
   CHECK(bounds + resistance <= 100);
 }
