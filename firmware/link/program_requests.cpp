@@ -361,7 +361,7 @@ protocol::RequestResult ProgramRequests::accept_shapes(std::span<const std::byte
   control::Shapes* next = shapes_.next();
   if (next == nullptr) return protocol::RequestResult::busy;
   if (!decode_shapes(report, *next, materials_)) return protocol::RequestResult::malformed;
-  find_tangents(*next, proxy_m(), control::near_margin_m + 2.0f * depth_m_.load());
+  find_tangents(*next, proxy_m(), depth_m_.load());
   shapes_.offer();
   return protocol::RequestResult::accepted;
 }

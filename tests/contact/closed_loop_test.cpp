@@ -35,14 +35,15 @@ TEST_CASE("the PC sends a model after 1 to 3 bus frames, and some reports are lo
 }
 
 TEST_CASE(
-    "in 30 s at thin walls without friction, no proxy falls through, and swaps of models do not raise the force") {
+    "in 30 s at thin walls without friction, no proxy stays beyond the wall, and models raise the force in few "
+    "periods") {
   const auto bodies = contact_trial::hollow_bodies();
   unsigned touching_periods = 0;
   for (std::uint64_t number = 0; number < 30; number += wall_kinds) {
     CAPTURE(number);
     const Visit result = visit(bodies, number, 3);
     CHECK(!result.has_fallen());
-    CHECK(result.rises * 1000 <= result.periods);
+    CHECK(result.rises * 1000 <= result.periods);  // in grooves, surfaces under the tip rise faster
     touching_periods += result.touching_periods;
   }
   CHECK(touching_periods > 10 * 3 * protocol::servo_rate_Hz / 4);

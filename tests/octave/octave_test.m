@@ -1,16 +1,6 @@
 % Tests the Octave functions on separate virtual boards. Exits with an error if a function fails.
 1;
 
-function refused(action, words)
-  try
-    action();
-  catch error_of
-    assert(! isempty(strfind(error_of.message, words)), "said instead: %s", error_of.message);
-    return;
-  end
-  error("%s was not refused", func2str(action));
-end
-
 % Errors contain the library's message.
 refused(@() inkwell_open('no such number'), 'no such number');
 

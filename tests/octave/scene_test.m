@@ -1,16 +1,6 @@
 % Tests scenes in Octave on a virtual board. Exits with an error if a function fails.
 1;
 
-function refused(action, words)
-  try
-    action();
-  catch error_of
-    assert(! isempty(strfind(error_of.message, words)), "said instead: %s", error_of.message);
-    return;
-  end
-  error("%s was not refused", func2str(action));
-end
-
 function force_N = press(arm)
   inkwell_hand(arm, [0 0 -0.042]);
   inkwell_sleep(arm, 0.4);
@@ -55,8 +45,8 @@ inkwell_sleep(arm, 0.1);
 assert(inkwell_pose(arm).force_N(3), 0, 1e-6);
 assert(isempty(inkwell_scene_contacts(arm)));
 inkwell_scene_remove(arm, cube);
-refused(@() inkwell_scene_remove(arm, cube), 'There is no object');
-refused(@() inkwell_scene_move(arm, -1, [0 0 0]), 'There is no object 0');
+refused(@() inkwell_scene_remove(arm, cube), 'does not contain object');
+refused(@() inkwell_scene_move(arm, -1, [0 0 0]), 'does not contain object 0');
 
 % Each primitive has its top at z = -0.04.
 for each = {{'sphere', 0.02, -0.06}, {'capsule', [0.02 0.005], -0.065}, {'cylinder', [0.02 0.02], -0.06}, ...
@@ -68,10 +58,10 @@ end
 
 % Bad input is refused and not felt.
 lift(arm);
-refused(@() inkwell_scene_add(arm, 'ball', 1), 'There is no shape ball');
+refused(@() inkwell_scene_add(arm, 'ball', 1), 'The shape ball does not exist');
 refused(@() inkwell_scene_add(arm, 'sphere', [1 2]), 'The size is not valid. Give 1 numbers');
 refused(@() inkwell_scene_add(arm, 'sphere', 0), 'A size of the object is 0 m');
-refused(@() inkwell_scene_add(arm, 'sphere', 0.01, 'soap'), 'There is no material');
+refused(@() inkwell_scene_add(arm, 'sphere', 0.01, 'soap'), 'The material soap does not exist');
 refused(@() inkwell_scene_add(arm, 'sphere', 0.01, struct('color', 1)), 'no property color');
 refused(@() inkwell_scene_add(arm, 'sphere', 0.01, [], [0 0]), 'The position is not valid');
 refused(@() inkwell_scene_add(arm, 'sphere', 0.01, [], [0 0 NaN]), 'A coordinate of the object');

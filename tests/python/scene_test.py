@@ -92,7 +92,7 @@ class Scenes(unittest.TestCase):
             self.arm.sleep(0.2)
             self.assertLess(self.arm.pose.force_N[2], 0.01)
             thing.remove()
-            with self.assertRaisesRegex(inkwell.BadArgument, "There is no object"):
+            with self.assertRaisesRegex(inkwell.BadArgument, "The scene does not contain object"):
                 thing.remove()
             self.lift()
 
@@ -109,7 +109,7 @@ class Scenes(unittest.TestCase):
                                        ("vertices have the type complex128", CUBE_M * 1j, FACES)):
             with self.assertRaisesRegex(TypeError, words):
                 self.scene.add(vertices, faces)
-        with self.assertRaisesRegex(inkwell.BadArgument, "There is no material with this name. Give one of these: wood"):
+        with self.assertRaisesRegex(inkwell.BadArgument, "The material soap does not exist. Give one of these: wood"):
             self.scene.add_sphere(0.01, material="soap")
         with self.assertRaisesRegex(TypeError, "The material is 7"):
             self.scene.add_sphere(0.01, material=7)

@@ -31,7 +31,7 @@ void LivingShapes::examine(const Vector3& proxy_m, float margin_m) {
 bool LivingShapes::renew(std::size_t number, const Vector3& proxy_m, float margin_m) {
   const std::uint32_t bit = 1u << number;
   near_ &= ~bit;
-  if (!is_near(*shapes_, number, proxy_m, margin_m)) return false;
+  if (!renew_tangent(*shapes_, number, proxy_m, margin_m)) return false;
   near_ |= bit;
   return true;
 }

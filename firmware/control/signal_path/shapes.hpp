@@ -33,22 +33,23 @@ struct Shapes {
 };
 
 /// Renews the tangent plane of a shape. Returns true if the shape is within `margin_m` of the proxy.
-inline bool is_near(Shapes& shapes, std::size_t number, const Vector3& proxy_m, float margin_m) {
+inline bool renew_tangent(Shapes& shapes, std::size_t number, const Vector3& proxy_m, float margin_m) {
   Plane& plane = shapes.planes[number];
   if (number >= Shapes::planes_maximum)
     return find_tangent(shapes.solids[number - Shapes::planes_maximum], proxy_m, margin_m, plane);
   return dot(plane.normal, proxy_m) - plane.offset_m < margin_m;
 }
 
-/// Sets `used`, `near` and the tangent planes of a new set from its other members. This function is inline, because
+/// Sets `used`, `near` and the tangent planes of a new set from its other members. `depth_m` is the depth of the probe
+/// in the present surfaces. This function is inline, because
 /// code of the main loop must not be in the interrupt memory.
-inline void find_tangents(Shapes& shapes, const Vector3& proxy_m, float margin_m = near_margin_m) {
+inline void find_tangents(Shapes& shapes, const Vector3& proxy_m, float depth_m = 0.0f) {
   shapes.used = 0;
   shapes.near = 0;
   for (std::size_t i = 0; i < Shapes::maximum; ++i) {
     if (shapes.life_periods[i] == 0) continue;
     shapes.used |= 1u << i;
-    if (is_near(shapes, i, proxy_m, margin_m)) shapes.near |= 1u << i;
+    if (renew_tangent(shapes, i, proxy_m, near_margin_m(depth_m))) shapes.near |= 1u << i;
   }
 }
 
@@ -62,7 +63,7 @@ class LivingShapes {
   bool age();
 
   /// Examines two shapes in turn: a solid near the proxy, whose tangent plane is renewed, and one of the other shapes.
-  void examine(const Vector3& proxy_m, float margin_m = near_margin_m);
+  void examine(const Vector3& proxy_m, float margin_m);
   /// Examines a shape. Returns true if the shape is near the proxy.
   bool renew(std::size_t number, const Vector3& proxy_m, float margin_m);
 

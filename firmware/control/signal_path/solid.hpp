@@ -14,17 +14,16 @@ struct Plane {
   float offset_m;
 };
 
-/// Shapes at a larger distance from the proxy are examined in turn. Until the next examination, at most 25 periods
-/// later, a proxy at 2 m/s moves less. A proxy that loses its support moves by its depth, so the depth increases the
-/// margin.
-inline constexpr float near_margin_m = 0.003f;
+/// A shape is near if its distance from the proxy is smaller. Other shapes are examined in turn: until the next
+/// examination, at most 25 periods later, a proxy at 2 m/s moves by 2.5 mm. A proxy that loses its support moves at
+/// most by the depth of the probe.
+constexpr float near_margin_m(float depth_m) { return 0.003f + 2.0f * depth_m; }
 
 /// Distances from a core below 0.1 um give no reliable direction.
 inline constexpr float smallest_squared_m2 = 1e-14f;
 
-/// All points within `radius_m` of a core. The core of a sphere is its center. The core of a capsule or of an infinite
-/// cylinder is a segment. The core of a rounded box is a smaller box, and the core of a rounded cylinder is a smaller
-/// cylinder.
+/// All points within `radius_m` of a core. The core of a sphere is its center. The core of a capsule is a
+/// segment. The core of a rounded box is a smaller box, and the core of a rounded cylinder is a smaller cylinder.
 struct Solid {
   enum class Core : std::uint32_t { nothing, point, segment, cylinder, box };
 

@@ -210,7 +210,7 @@ void Touch::add_walls(const Vector3& probe_m, const Box& walls, const Surface& w
 
 void Touch::add_shapes(const Vector3& probe_m) {
   const float height_m = -barriers_.reach_m;
-  const float margin_m = near_margin_m - 2.0f * height_m;
+  const float margin_m = near_margin_m(barriers_.reach_m);
   shapes.examine(proxy_m_, margin_m);
   const Vector3 at_m = probe_m;
   std::uint32_t near = shapes.near();

@@ -5,9 +5,8 @@
 // tangent plane of its surface. The proxy moves to the point nearest to the probe that no barrier excludes. Spring and
 // damper act between proxy and probe. Friction holds the proxy back.
 //
-// Tangent planes of curved objects are renewed in turn, so that the number of objects does not increase the work of a
-// period. An older tangent plane is outside the convex object. A new tangent plane is farther from the proxy, so it
-// does not increase the force.
+// Tangent planes of curved objects are renewed in turn, because a period is too short for all objects. An older tangent
+// plane is outside the convex object. A new tangent plane is farther from the proxy, so it does not increase the force.
 //
 // A new local model does not increase the force: its barriers recede to the proxy, so the previous proxy remains in the
 // free space, and the nearest free point is not farther from the probe than the previous proxy.

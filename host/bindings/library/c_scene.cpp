@@ -31,8 +31,10 @@ static_assert(INKWELL_TOUCHED == static_cast<int>(feel::Event::Kind::touched) &&
               INKWELL_PRESSED == static_cast<int>(feel::Event::Kind::pressed) &&
               INKWELL_RELEASED == static_cast<int>(feel::Event::Kind::released));
 
-/// Faster objects are errors of the program, because the board limits speeds to these values.
+/// Faster objects are errors of the program. A local model can contain these values.
 constexpr double speed_maximum_m_per_s = 6, spin_maximum_rad_per_s = 30;
+static_assert(speed_maximum_m_per_s <= double{protocol::local_speed_step_m_per_s} * INT16_MAX);
+static_assert(spin_maximum_rad_per_s <= double{protocol::local_spin_step_rad_per_s} * INT8_MAX);
 
 glm::dvec3 vector_of(const double (&values)[3], double maximum, const char* what, const char* unit) {
   for (const double value : values)
@@ -115,7 +117,7 @@ inkwell_result inkwell_find_material(const char* name, inkwell_material* materia
     const auto* const found = feel::find_material(required(name, "The name"));
     if (found == nullptr)
       throw BadArgument(
-          fmt::format("There is no material with this name. Give one of these: {}.", feel::material_names()));
+          fmt::format("The material {} does not exist. Give one of these: {}.", name, feel::material_names()));
     const contact::Material& properties = found->properties;
     *material = {static_cast<double>(properties.stiffness_N_per_m), static_cast<double>(properties.damping_Ns_per_m),
                  static_cast<double>(properties.static_friction), static_cast<double>(properties.dynamic_friction),

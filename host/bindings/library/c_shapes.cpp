@@ -32,7 +32,7 @@ device::Surface surface_of(const inkwell_surface& surface, double viscosity_Ns_p
           static_cast<float>(viscosity_Ns_per_m),        static_cast<float>(surface.life_s)};
 }
 
-/// A quaternion without members is no rotation.
+/// A quaternion of zeros stands for the unturned solid.
 std::array<float, 4> orientation_of(const double (&quaternion)[4]) {
   const auto& [x, y, z, w] = quaternion;
   if (x == 0 && y == 0 && z == 0 && w == 0) return {1, 0, 0, 0};

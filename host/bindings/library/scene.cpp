@@ -17,7 +17,7 @@ namespace {
 contact::Object& object_of(contact::Scene& scene, std::uint32_t number) {
   const auto found = std::ranges::find(scene.objects, number, &contact::Object::id);
   if (found == scene.objects.end())
-    throw BadArgument(fmt::format("There is no object {} in the scene. Give the number of an added object.", number));
+    throw BadArgument(fmt::format("The scene does not contain object {}. Give the number of an added object.", number));
   return *found;
 }
 

@@ -437,7 +437,7 @@ Answers scene_add(const Arguments& arguments) {
     std::size_t shape = 0;
     while (shape < std::size(shapes) && (name != shapes[shape].first || name.empty())) ++shape;
     if (shape == std::size(shapes))
-      throw Wrong("There is no shape " + name + ". Give sphere, capsule, cylinder, box or half-space.");
+      throw Wrong("The shape " + name + " does not exist. Give sphere, capsule, cylinder, box or half-space.");
     object.shape = static_cast<inkwell_shape>(shape);
     put(argument(arguments, 2), shapes[shape].second, "size", object.size_m);
   } else {

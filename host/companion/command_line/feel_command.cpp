@@ -109,7 +109,7 @@ window::ShownObject shown(const feel::LoadedObject& loaded, const feel::ServoVie
 int feel_in_window(const CommandContext& context, const FeelOptions& options, feel::Loading& loading,
                    contact::Publication& publication, feel::Servo& servo) {
   AwaitedObject awaited(loading, [&](const feel::LoadedObject& loaded) {
-    describe(loaded, options);
+    if (!context.device.json) describe(loaded, options);
     publication.publish(scene_of(loaded, options));
   });
   if (loading.is_done_within(silent_time)) awaited.follow();

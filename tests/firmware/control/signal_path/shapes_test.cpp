@@ -13,6 +13,7 @@ using control::Shapes;
 using control::Solid;
 using control::Vector3;
 
+constexpr float margin_m = control::near_margin_m(0.0f);
 constexpr std::size_t first_solid = Shapes::planes_maximum;
 
 /// Adds spheres of 10 mm at the origin.
@@ -34,7 +35,7 @@ TEST_CASE("without shapes nothing lives") {
   CHECK(!living.any());
   CHECK(living.near() == 0);
   CHECK(!living.age());
-  living.examine({});
+  living.examine({}, margin_m);
 }
 
 TEST_CASE("each shape ends at most 25 periods after its life, and the end is reported once") {
@@ -50,7 +51,7 @@ TEST_CASE("each shape ends at most 25 periods after its life, and the end is rep
   for (std::uint32_t period = 1; period < 3000; ++period) {
     CAPTURE(period);
     ends += living.age();
-    living.examine({0, 0, 0.012f});
+    living.examine({0, 0, 0.012f}, margin_m);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const bool lives_on = (living.near() >> numbers[i] & 1u) != 0;
       if (period < lives[i]) CHECK(lives_on);
@@ -78,7 +79,7 @@ TEST_CASE("the tangent planes of seventeen solids are renewed in seventeen perio
                          [&](const auto& plane) { return plane.normal.x > 0.9f * normal.x; });
   };
   for (int period = 1; period <= 17; ++period) {
-    living.examine({0.012f, 0, 0});
+    living.examine({0.012f, 0, 0}, margin_m);
     CHECK(renewed({1, 0, 0}) == period);
   }
 }
@@ -90,8 +91,8 @@ TEST_CASE("a shape is near while the proxy is within 3 mm of its surface") {
   shapes.life_periods[0] = Shapes::lasting;
   LivingShapes living;
   const auto near_at = [&](const Vector3& proxy_m) {
-    living.examine(proxy_m);
-    living.examine(proxy_m);
+    living.examine(proxy_m, margin_m);
+    living.examine(proxy_m, margin_m);
     return living.near();
   };
   find_tangents(shapes, {0, 0, 0.2f});
@@ -121,7 +122,7 @@ TEST_CASE("a far shape is found in 25 periods, while near solids are renewed in 
   living.replace(shapes);
   shapes.solids[16].centre_m = {};
   for (int period = 1; period <= 25; ++period) {
-    living.examine(period % 2 == 0 ? Vector3{0, 0.012f, 0} : Vector3{0.012f, 0, 0});
+    living.examine(period % 2 == 0 ? Vector3{0, 0.012f, 0} : Vector3{0.012f, 0, 0}, margin_m);
     if ((living.near() >> (first_solid + 16) & 1u) != 0) break;
     CHECK(living.plane(first_solid).normal.y == doctest::Approx(period % 2 == 0 ? 1.0f : 0.0f));
   }

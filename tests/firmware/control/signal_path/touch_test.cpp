@@ -81,6 +81,13 @@ struct Hand {
 
 constexpr Vector3 up{0.0f, 0.0f, 1.0f};
 
+/// A box with its top at z = 0.
+constexpr Solid table{.core = Core::box,
+                      .centre_m = {0.0f, 0.0f, -0.01f},
+                      .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up},
+                      .half_m = {0.05f, 0.05f, 0.0095f},
+                      .radius_m = 5e-4f};
+
 TEST_CASE("without objects there is no force, and the proxy is the probe") {
   Touch touch;
   CHECK(!touch.has_objects());
@@ -211,13 +218,7 @@ TEST_CASE("a sphere among sixteen other solids in reach is felt as one sphere, a
 TEST_CASE("objects that the hand passed while the force was off do not push") {
   Hand hand;
   put_solid(hand.shapes, 0, {.core = Core::point, .centre_m = {0.0f, 0.03f, 0.0f}, .radius_m = 0.005f}, smooth);
-  put_solid(hand.shapes, 1,
-            {.core = Core::box,
-             .centre_m = {0.0f, 0.0f, -0.01f},
-             .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up},
-             .half_m = {0.05f, 0.05f, 0.0095f},
-             .radius_m = 5e-4f},
-            smooth);
+  put_solid(hand.shapes, 1, table, smooth);
   hand.at({0.0f, 0.03f, 0.006f});
   hand.place();
   hand.at({0.0f, 0.03f, 0.006f});
@@ -264,13 +265,7 @@ TEST_CASE("a probe between ten posts is pushed out of the table below") {
                .radius_m = 0.001f},
               smooth);
   }
-  put_solid(hand.shapes, 16,
-            {.core = Core::box,
-             .centre_m = {0.0f, 0.0f, -0.01f},
-             .axes = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, up},
-             .half_m = {0.05f, 0.05f, 0.0095f},
-             .radius_m = 5e-4f},
-            smooth);
+  put_solid(hand.shapes, 16, table, smooth);
   hand.at({0.0f, 0.0f, 0.001f});
   hand.place();
   hand.move_to({0.0f, 0.0f, -0.003f});

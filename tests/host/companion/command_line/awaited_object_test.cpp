@@ -34,7 +34,7 @@ TEST_CASE("an awaited object reports step and percentage, and is adopted once") 
 
 TEST_CASE("an awaited object that cannot be used reports its problem") {
   feel::Loading loading({.file = "/nowhere/skull.stl", .workspace = workspace});
-  AwaitedObject awaited(loading, [](const feel::LoadedObject&) { FAIL("there is no object"); });
+  AwaitedObject awaited(loading, [](const feel::LoadedObject&) { FAIL("the load has failed"); });
   while (awaited.problem().empty()) {
     std::this_thread::yield();
     awaited.follow();
