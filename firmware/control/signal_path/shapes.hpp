@@ -41,8 +41,7 @@ inline bool renew_tangent(Shapes& shapes, std::size_t number, const Vector3& pro
 }
 
 /// Sets `used`, `near` and the tangent planes of a new set from its other members. `depth_m` is the depth of the probe
-/// in the present surfaces. This function is inline, because
-/// code of the main loop must not be in the interrupt memory.
+/// in the present surfaces. This function is inline, because code of the main loop must not be in the interrupt memory.
 inline void find_tangents(Shapes& shapes, const Vector3& proxy_m, float depth_m = 0.0f) {
   shapes.used = 0;
   shapes.near = 0;

@@ -68,8 +68,11 @@ TEST_CASE("an interrupted call with a time limit does not exceed the limit") {
     errno = EINTR;
     return rests.size() < 4 ? -1 : 0;
   });
-  CHECK(rests == std::vector{20ms, rests[1], 0ms, 0ms});
+  REQUIRE(rests.size() == 4);
+  CHECK(rests[0] <= 20ms);
   CHECK(rests[1] <= 5ms);
+  CHECK(rests[2] == 0ms);
+  CHECK(rests[3] == 0ms);
 }
 
 TEST_CASE("a signal during a connection attempt does not disturb the connection") {
