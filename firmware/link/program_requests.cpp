@@ -83,7 +83,6 @@ bool decode_sphere(const protocol::SphereEntry& entry, control::Solid& solid) {
   const float limit = protocol::shape_distance_maximum_m;
   if (!is_valid(entry.centre_m, limit) || !(entry.radius_m > 0.0f && entry.radius_m <= limit)) return false;
   solid = {.core = Core::point, .centre_m = vector_of(entry.centre_m), .radius_m = entry.radius_m};
-  solid.extent_m = solid.radius_m;
   return true;
 }
 
@@ -119,28 +118,22 @@ bool decode_solid(const protocol::SolidEntry& entry, control::Solid& solid) {
   const auto& [first_m, second_m, third_m] = entry.size_m;
   solid = {.centre_m = vector_of(entry.centre_m), .axes = {axes[2]}, .radius_m = first_m};
   switch (entry.kind) {
-    case SolidKind::sphere:
-      solid.core = Core::point;
-      solid.extent_m = solid.radius_m;
-      break;
+    case SolidKind::sphere: solid.core = Core::point; break;
     case SolidKind::capsule:
       solid.core = Core::segment;
       solid.half_m = {second_m};
-      solid.extent_m = second_m + solid.radius_m;
       break;
     case SolidKind::cylinder:
       solid.core = Core::cylinder;
       solid.half_m = {second_m - rounding_m};
       solid.core_radius_m = first_m - rounding_m;
       solid.radius_m = rounding_m;
-      solid.extent_m = std::sqrt(first_m * first_m + second_m * second_m);
       break;
     case SolidKind::box:
       solid.core = Core::box;
       solid.axes = axes;
       solid.half_m = {first_m - rounding_m, second_m - rounding_m, third_m - rounding_m};
       solid.radius_m = rounding_m;
-      solid.extent_m = std::sqrt(first_m * first_m + second_m * second_m + third_m * third_m);
       break;
   }
   return true;

@@ -56,7 +56,7 @@ control::Shapes nine_shapes() {
                                  .viscosity_Ns_per_m = 0.0f};
   const float diagonal = 1.0f / std::numbers::sqrt3_v<float>;
   control::Shapes shapes;
-  shapes.solids[0] = {.core = control::Solid::Core::point, .radius_m = 0.02f, .extent_m = 0.02f};
+  shapes.solids[0] = {.core = control::Solid::Core::point, .radius_m = 0.02f};
   for (unsigned i = 0; i < control::Shapes::planes_maximum; ++i) {
     const auto sign = [&](unsigned axis) { return (i >> axis & 1) != 0 ? diagonal : -diagonal; };
     shapes.planes[i] = {{sign(0), sign(1), sign(2)}, -0.06f};

@@ -24,8 +24,11 @@ bool LivingShapes::age() {
 }
 
 void LivingShapes::examine(const Vector3& proxy_m, float margin_m) {
-  examine_next(above_solid_, near_ & ~Shapes::all_planes, proxy_m, margin_m);
-  examine_next(above_, living_ & (Shapes::all_planes | ~near_), proxy_m, margin_m);
+  is_turn_of_near_solids_ = !is_turn_of_near_solids_;
+  if (is_turn_of_near_solids_)
+    examine_next(above_solid_, near_ & ~Shapes::all_planes, proxy_m, margin_m);
+  else
+    examine_next(above_, living_ & (Shapes::all_planes | ~near_), proxy_m, margin_m);
 }
 
 bool LivingShapes::renew(std::size_t number, const Vector3& proxy_m, float margin_m) {

@@ -61,10 +61,12 @@ class LivingShapes {
   /// Advances by one period. Returns true if a shape has expired. A shape ends at most 25 periods after its life.
   bool age();
 
-  /// Examines two shapes in turn: a solid near the proxy, whose tangent plane is renewed, and one of the other shapes.
+  /// Examines a shape: in turn a solid near the proxy, whose tangent plane is renewed, and one of the other shapes.
   void examine(const Vector3& proxy_m, float margin_m);
   /// Examines a shape. Returns true if the shape is near the proxy.
   bool renew(std::size_t number, const Vector3& proxy_m, float margin_m);
+  /// The shape is near again when it is examined in turn.
+  void forget(std::size_t number) { near_ &= ~(1u << number); }
 
   bool any() const { return living_ != 0; }
   /// Shapes near the proxy, one bit per shape number.
@@ -81,6 +83,7 @@ class LivingShapes {
   std::uint32_t near_ = 0;         ///< living shapes near the proxy
   std::uint32_t above_solid_ = 0;  ///< one bit per shape above the near solid that was examined last
   std::uint32_t above_ = 0;        ///< the same for the other shapes
+  bool is_turn_of_near_solids_ = false;
   std::uint32_t aged_ = 0;         ///< number of the shape whose life was examined last
 };
 

@@ -27,10 +27,8 @@ bool find_foot(const Solid& solid, const Vector3& point_m, Foot& foot) {
 }
 
 bool find_tangent(const Solid& solid, const Vector3& point_m, float margin_m, Plane& tangent) {
-  const Vector3 from_centre_m = point_m - solid.centre_m;
-  const float reach_m = solid.extent_m + margin_m;
   Foot foot;
-  if (dot(from_centre_m, from_centre_m) > reach_m * reach_m || !find_foot(solid, point_m, foot)) return false;
+  if (!find_foot(solid, point_m, foot)) return false;
   tangent = {foot.normal, dot(foot.normal, point_m) - foot.height_m};
   return foot.height_m < margin_m;
 }

@@ -15,9 +15,9 @@ struct Plane {
 };
 
 /// A shape is near if its distance from the proxy is smaller. Other shapes are examined in turn: until the next
-/// examination, at most 25 periods later, a proxy at 2 m/s moves by 2.5 mm. A proxy that loses its support moves at
-/// most by the depth of the probe.
-constexpr float near_margin_m(float depth_m) { return 0.003f + 2.0f * depth_m; }
+/// examination, at most 50 periods later, a proxy at 2 m/s moves by 5 mm. A proxy that loses its support moves at most by
+/// the depth of the probe.
+constexpr float near_margin_m(float depth_m) { return 0.006f + 2.0f * depth_m; }
 
 /// Distances from a core below 0.1 um give no reliable direction.
 inline constexpr float smallest_squared_m2 = 1e-14f;
@@ -34,7 +34,6 @@ struct Solid {
   std::array<float, 3> half_m{};  ///< half lengths of the core along the axes
   float core_radius_m = 0.0f;     ///< of the core of a cylinder
   float radius_m = 0.0f;          ///< radius, or rounding of the edges
-  float extent_m = 0.0f;          ///< distance from `centre_m` to the farthest point of the solid
 };
 
 /// Relation of a point to the surface of a solid.

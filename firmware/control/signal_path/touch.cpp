@@ -19,6 +19,8 @@ constexpr std::array<Vector3, 6> wall_normals{{{1.0f, 0.0f, 0.0f},
 
 /// Largest increase of the force of a recessed surface in a period.
 constexpr float rise_N = 4e-3f;
+/// Solids whose tangent planes are renewed in the first period of a touch.
+constexpr std::size_t renewals_maximum = 2;
 /// Square of the sine of the smallest angle between two barriers that count as two.
 constexpr float flat_sine_squared = 1e-5f;
 
@@ -57,6 +59,7 @@ void set_two(Support& support, const Barrier& a, const Barrier& b) {
   support.count = 0;
   support.add(a, per_sine_squared * a_m);
   support.add(b, per_sine_squared * b_m);
+  support.depth_m[2] = 0.0f;
   support.out_m = support.depth_m[0] * a.normal + support.depth_m[1] * b.normal;
 }
 
@@ -82,24 +85,23 @@ void set_three(Support& support, const Barrier& a, const Barrier& b, const Barri
 }
 
 /// Part of the damper of each barrier that acts. It is 1 for barriers at right angles. The parts of parallel barriers
-/// have the sum 1, so that two parallel surfaces do not damp twice.
-std::array<float, 3> damper_parts(const Support& support) {
-  if (support.count == 1) return {1.0f, 0.0f, 0.0f};
+/// have the sum 1, so that two parallel surfaces do not damp twice. `per_sum` is the reciprocal of the sum of the
+/// depths.
+std::array<float, 3> damper_parts(const Support& support, float per_sum) {
   const auto [a, b, c] = support.barriers;
   const auto [a_m, b_m, c_m] = support.depth_m;
-  const auto sine_squared = [](const Barrier& first, const Barrier& second) {
+  const auto common = [per_sum](const Barrier& first, const Barrier& second) {
     const float cosine = dot(first.normal, second.normal);
-    return 1.0f - cosine * cosine;
+    return per_sum * cosine * cosine;
   };
-  const float ab = sine_squared(*a, *b);
-  if (support.count == 2) {
-    const float per_sum = reciprocal(a_m + b_m);
-    return {per_sum * (a_m + ab * b_m), per_sum * (b_m + ab * a_m), 0.0f};
-  }
-  const float ac = sine_squared(*a, *c), bc = sine_squared(*b, *c);
-  const float per_sum = reciprocal(a_m + b_m + c_m);
-  return {per_sum * (a_m + ab * b_m + ac * c_m), per_sum * (b_m + ab * a_m + bc * c_m),
-          per_sum * (c_m + ac * a_m + bc * b_m)};
+  const float ab = common(*a, *b);
+  std::array<float, 3> parts{1.0f - ab * b_m, 1.0f - ab * a_m, 1.0f};
+  if (support.count == 2) return parts;
+  const float ac = common(*a, *c), bc = common(*b, *c);
+  parts[0] -= ac * c_m;
+  parts[1] -= bc * c_m;
+  parts[2] -= ac * a_m + bc * b_m;
+  return parts;
 }
 
 /// Friction and viscosity on the surface of the main barrier.
@@ -118,8 +120,9 @@ Tangential friction(const Surface& surface, const Vector3& lag_m, const Vector3&
                     bool slides) {
   const Vector3 held_N = surface.stiffness_N_per_m * lag_m - surface.damping_Ns_per_m * velocity_m_per_s;
   const float bound_N = normal_N * (slides ? surface.dynamic_friction : surface.static_friction);
-  if (dot(held_N, held_N) <= bound_N * bound_N) return {held_N, lag_m, false};
-  const Vector3 sliding_N = bounded(held_N, surface.dynamic_friction * normal_N).force_N;
+  const float squared_N2 = dot(held_N, held_N);
+  if (squared_N2 <= bound_N * bound_N || squared_N2 < smallest_squared_N2) return {held_N, lag_m, false};
+  const Vector3 sliding_N = (surface.dynamic_friction * normal_N * reciprocal_square_root(squared_N2)) * held_N;
   return {sliding_N, surface.m_per_N * sliding_N, true};
 }
 
@@ -156,7 +159,10 @@ void find_support(const Barriers& barriers, Support& support) {
 }
 
 void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
-  if (count == maximum) return;
+  if (count == maximum) {
+    if (depth_m <= deepest_m) return;
+    --count;  // the deepest barrier replaces the last one
+  }
   Barrier& barrier = list[count++];
   barrier.normal.x = normal.x;
   barrier.normal.y = normal.y;
@@ -214,23 +220,29 @@ void Touch::add_shapes(const Vector3& probe_m) {
   shapes.examine(proxy_m_, margin_m);
   const Vector3 at_m = probe_m;
   std::uint32_t near = shapes.near();
-  for (std::size_t i = 0; i < Shapes::maximum && near != 0 && barriers_.count < Barriers::maximum; ++i) {
+  std::size_t renewals = 0;
+  for (std::size_t i = 0; i < Shapes::maximum && near != 0; ++i) {
     const auto number = static_cast<std::size_t>(std::countr_zero(near));
     const Plane& plane = shapes.plane(number);
     float depth_m = plane.offset_m - dot(plane.normal, at_m);
     near &= near - 1;
     if (!(depth_m > height_m)) continue;
-    // A touch does not begin at a tangent plane of another position.
-    if (!touches_)
-      depth_m = shapes.renew(number, proxy_m_, margin_m) ? plane.offset_m - dot(plane.normal, at_m) : -1.0f;
+    // A touch does not begin at a tangent plane of another position. Solids that are not renewed are found in turn.
+    if (!touches_ && number >= Shapes::planes_maximum) {
+      if (renewals++ >= renewals_maximum || !shapes.renew(number, proxy_m_, margin_m)) {
+        shapes.forget(number);
+        continue;
+      }
+      depth_m = plane.offset_m - dot(plane.normal, at_m);
+    }
     barriers_.add(plane.normal, depth_m, shapes.surface(number), still);
   }
 }
 
 void Touch::add_model(const Vector3& probe_m) {
   constexpr float recovery_m = LocalModel::recovery_m_per_s * protocol::servo_period_s;
-  // In a groove of two surfaces, the proxy moves faster than the surfaces. New surfaces do not move before they touch.
-  const float step_part = model_is_new_ ? 0.0f : (is_wedged_ ? 0.25f : 1.0f);
+  // New surfaces do not move before they touch.
+  const float step_part = model_is_new_ ? 0.0f : rise_part_;
   model_is_new_ = false;
   LocalModel& model = *model_;
   const std::size_t count = model.count;
@@ -270,16 +282,22 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   find_support(barriers_, support_);
   const Support& support = support_;
   touches_ = true;
-  is_wedged_ = support.count > 1;
-  barriers_.reach_m = 0.0f;
+  barriers_.reach_m = support.depth_m[0];
+  std::array<float, 3> parts{1.0f, 1.0f, 1.0f};
+  float rise_part = 1.0f;
+  if (support.count > 1) {
+    barriers_.reach_m += support.depth_m[1] + support.depth_m[2];
+    const float per_reach_per_m = reciprocal(barriers_.reach_m);
+    rise_part = dot(support.out_m, support.out_m) * per_reach_per_m * per_reach_per_m;
+    parts = damper_parts(support, per_reach_per_m);
+  }
+  rise_part_ = least(rise_part, 2.0f * rise_part_);
   Vector3 normal_sum_N;
   float most_N = 0.0f;
   const Barrier* main = support.barriers[0];
-  const auto parts = damper_parts(support);
 #pragma GCC unroll 1
   for (std::size_t i = 0; i < support.count; ++i) {
     const Barrier& barrier = *support.barriers[i];
-    barriers_.reach_m += support.depth_m[i];
     const float speed_m_per_s = dot(barrier.normal, velocity_m_per_s - barrier.motion->velocity_m_per_s);
     const float push_N = barrier.surface->stiffness_N_per_m * support.depth_m[i] -
                          parts[i] * barrier.surface->damping_Ns_per_m * speed_m_per_s;

@@ -35,9 +35,9 @@ struct Barrier {
 /// Depth above which a barrier excludes a point. Rounding errors are smaller.
 inline constexpr float depth_tolerance_m = 1e-7f;
 
-/// Barriers of one period. Further barriers are ignored.
+/// Barriers of one period. If there are more barriers, the list contains the deepest one and the first ones.
 struct Barriers {
-  static constexpr std::size_t maximum = 12;
+  static constexpr std::size_t maximum = 8;
 
   std::array<Barrier, maximum> list{};
   std::size_t count = 0;
@@ -103,7 +103,7 @@ class Touch {
   void release(const Vector3& probe_m) {
     proxy_m_ = probe_m;
     touches_ = false;
-    is_wedged_ = false;
+    rise_part_ = first_rise_part;
     barriers_.reach_m = 0.0f;
   }
 
@@ -126,7 +126,10 @@ class Touch {
   Vector3 proxy_m_;
   bool touches_ = false;
   bool slides_ = false;
-  bool is_wedged_ = false;  ///< more than one barrier supported the proxy in the previous period
+  static constexpr float first_rise_part = 0.0625f;
+  /// Motion of surfaces that moves the proxy as far as one surface does. In a groove, the proxy moves faster than the
+  /// surfaces: by the sum of the depths, divided by the distance from the probe to the proxy.
+  float rise_part_ = first_rise_part;
   // Results of this period are members, because the initialization of local variables takes cycles.
   Barriers barriers_;
   Support support_;

@@ -66,14 +66,11 @@ TEST_CASE("heights above the sides, the edges and the ends of the solids") {
 }
 
 TEST_CASE("a tangent plane touches the solid at the foot of the point, and a far point gives none") {
-  Solid sphere = solids[0];
-  sphere.extent_m = sphere.radius_m;
+  const Solid& sphere = solids[0];
   control::Plane tangent;
   REQUIRE(find_tangent(sphere, {0.01f, 0.0229f, 0}, 0.003f, tangent));
   CHECK(tangent.normal.y == doctest::Approx(1.0f));
   CHECK(tangent.offset_m == doctest::Approx(0.02f));
-  CHECK(!find_tangent(sphere, {0.01f, 0.0231f, 0}, 0.003f, tangent));
-  sphere.extent_m = 1.0f;
   CHECK(!find_tangent(sphere, {0.01f, 0.0231f, 0}, 0.003f, tangent));
   CHECK(!find_tangent(sphere, sphere.centre_m, 0.003f, tangent));
 }

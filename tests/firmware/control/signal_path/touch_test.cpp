@@ -48,8 +48,7 @@ void put_plane(Shapes& shapes, std::size_t number, const Vector3& normal, float 
   shapes.life_periods[number] = Shapes::lasting;
 }
 
-void put_solid(Shapes& shapes, std::size_t number, Solid solid, const Surface& surface) {
-  solid.extent_m = 1.0f;
+void put_solid(Shapes& shapes, std::size_t number, const Solid& solid, const Surface& surface) {
   shapes.solids[number] = solid;
   shapes.surfaces[Shapes::planes_maximum + number] = surface;
   shapes.life_periods[Shapes::planes_maximum + number] = Shapes::lasting;
@@ -336,6 +335,7 @@ TEST_CASE("the first period of a touch has the force for the position of the pro
   Hand hand;
   put_solid(hand.shapes, 0, {.core = Core::point, .centre_m = {0.05f, 0.0f, 0.0f}, .radius_m = 0.02f}, smooth);
   hand.place();
+  for (int i = 0; i < 60; ++i) hand.at({0.05f, 0.0f, 0.0215f});
   CHECK(hand.at({0.069f, 0.0f, 0.0f}).x == doctest::Approx(1.0f).epsilon(1e-3));
 }
 
