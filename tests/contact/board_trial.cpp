@@ -82,8 +82,8 @@ class RiseMeter {
     const double explained_N =
         late_N_ + stiffness_N_per_m_ * glm::distance(probe_m, probe_m_) + damping_Ns_per_m_ * change_m_per_s;
     const double rise_N = force_N - force_N_ - explained_N;
-    const bool is_late = (loop.controller().limits() & static_cast<unsigned>(protocol::Limit::change)) != 0;
-    late_N_ = is_late ? std::max(-rise_N, 0.0) : 0;
+    const bool is_limited = loop.controller().limits() != 0;
+    late_N_ = is_limited ? std::max(-rise_N, 0.0) : 0;
     probe_m_ = probe_m;
     velocity_m_per_s_ = velocity_m_per_s;
     force_N_ = force_N;
@@ -94,7 +94,7 @@ class RiseMeter {
   double stiffness_N_per_m_, damping_Ns_per_m_;
   glm::dvec3 probe_m_, velocity_m_per_s_;
   double force_N_ = 0;
-  double late_N_ = 0;  ///< explained rise that the limit of the force change has delayed
+  double late_N_ = 0;  ///< explained rise that the limits of the board have delayed
 };
 
 }  // namespace

@@ -35,18 +35,19 @@ TEST_CASE("the PC sends a model after 1 to 3 bus frames, and some reports are lo
 }
 
 TEST_CASE(
-    "in 30 s at thin walls without friction, no proxy stays beyond the wall, and models raise the force in few "
-    "periods") {
+    "in 90 s at thin walls, no proxy stays beyond the wall, and models of surfaces without damping do not raise the "
+    "force") {
   const auto bodies = contact_trial::hollow_bodies();
   unsigned touching_periods = 0;
-  for (std::uint64_t number = 0; number < 30; number += wall_kinds) {
+  for (std::uint64_t number = 0; number < 30; ++number) {
     CAPTURE(number);
     const Visit result = visit(bodies, number, 3);
     CHECK(!result.has_fallen());
-    CHECK(result.rises * 1000 <= result.periods);  // in grooves, surfaces under the tip rise faster
+    // The damper of a second surface begins with a step.
+    if (result.wall != Wall::friction_and_damping) CHECK(result.rises <= 2);
     touching_periods += result.touching_periods;
   }
-  CHECK(touching_periods > 10 * 3 * protocol::servo_rate_Hz / 4);
+  CHECK(touching_periods > 30 * 3 * protocol::servo_rate_Hz / 4);
 }
 
 }  // namespace inkwell::closed_loop

@@ -104,8 +104,8 @@ std::array<float, 3> damper_parts(const Support& support, float per_sum) {
   return parts;
 }
 
-/// Friction and viscosity on the surface of the main barrier.
-struct Tangential {
+/// Friction on the surface of the main barrier.
+struct Friction {
   Vector3 force_N;
   Vector3 lag_m;  ///< from the frictionless proxy to the proxy
   bool slides;
@@ -115,25 +115,28 @@ struct Tangential {
 constexpr float smallest_squared_N2 = 1e-12f;
 
 /// Stick-slip friction (Salisbury et al., "Haptic rendering: programming touch interaction with virtual objects", I3D
-/// 1995). `lag_m` and `velocity_m_per_s` are tangential. The lag of the previous proxy is a stretched spring.
-Tangential friction(const Surface& surface, const Vector3& lag_m, const Vector3& velocity_m_per_s, float normal_N,
-                    bool slides) {
+/// 1995). `velocity_m_per_s` is tangential. The lag of the previous proxy is a stretched spring.
+Friction find_friction(const Surface& surface, const Vector3& lag_m, const Vector3& velocity_m_per_s, float normal_N,
+                       bool slides) {
   const Vector3 held_N = surface.stiffness_N_per_m * lag_m - surface.damping_Ns_per_m * velocity_m_per_s;
   const float bound_N = normal_N * (slides ? surface.dynamic_friction : surface.static_friction);
   const float squared_N2 = dot(held_N, held_N);
-  if (squared_N2 <= bound_N * bound_N || squared_N2 < smallest_squared_N2) return {held_N, lag_m, false};
-  const Vector3 sliding_N = (surface.dynamic_friction * normal_N * reciprocal_square_root(squared_N2)) * held_N;
-  return {sliding_N, surface.m_per_N * sliding_N, true};
+  if (squared_N2 <= bound_N * bound_N + smallest_squared_N2) return {held_N, lag_m, false};
+  const float part = surface.dynamic_friction * normal_N * reciprocal_square_root(squared_N2);
+  return {part * held_N, (part * surface.m_per_N) * held_N, true};
 }
 
-/// Moves a point, which friction has displaced, out of the barriers. `point_m` is relative to the probe.
-Vector3 in_free_space_m(const Barriers& barriers, Vector3 point_m) {
+/// Returns the vector from the frictionless proxy to a held point. The held point, relative to the probe, first leaves
+/// the barriers, and then falls along the normal until it touches a barrier. In a groove, the point may be on one of
+/// the two surfaces.
+Vector3 find_lag_m(const Barriers& barriers, const Support& support, Vector3 held_m, const Vector3& normal) {
   for (std::size_t i = 0; i < barriers.count; ++i) {
-    const Barrier& barrier = barriers.list[i];
-    const float depth_m = depth_at(barrier, point_m);
-    if (depth_m > 0.0f) point_m = point_m + depth_m * barrier.normal;
+    const float depth_m = depth_at(barriers.list[i], held_m);
+    if (depth_m > 0.0f) held_m = held_m + depth_m * barriers.list[i].normal;
   }
-  return point_m;
+  float height_m = 1.0f;
+  for (std::size_t i = 0; i < barriers.count; ++i) height_m = least(height_m, -depth_at(barriers.list[i], held_m));
+  return held_m - height_m * normal - support.out_m;
 }
 
 Vector3 viscous_force_N(const Surface& surface, const Vector3& velocity_m_per_s, float normal_N) {
@@ -325,9 +328,10 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   const auto tangential = [&normal](const Vector3& vector) { return vector - dot(vector, normal) * normal; };
   const Vector3 sideways_m_per_s = tangential(velocity_m_per_s - main->motion->velocity_m_per_s);
   if (surface.static_friction != 0.0f) {
-    const Tangential held = friction(surface, tangential(held_m - frictionless_m), sideways_m_per_s, normal_N, slides_);
+    const Vector3 lag_m = find_lag_m(barriers_, support, held_m - probe_m, normal);
+    const Friction held = find_friction(surface, lag_m, sideways_m_per_s, normal_N, slides_);
     slides_ = held.slides;
-    proxy_m_ = probe_m + in_free_space_m(barriers_, support.out_m + held.lag_m);
+    proxy_m_ = frictionless_m + held.lag_m;
     main_N = main_N + held.force_N;
   }
   if (surface.viscosity_Ns_per_m != 0.0f) main_N = main_N + viscous_force_N(surface, sideways_m_per_s, normal_N);
