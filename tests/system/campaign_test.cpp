@@ -196,6 +196,18 @@ TEST_CASE("a core, or a control interrupt, that stops lets go of the bridges wit
   }
 }
 
+TEST_CASE("wrong local models leave the force on and within its limit") {
+  for (const char* name : {"models_lost rest 1", "models_contradictory wall 1"}) {
+    const Result result = result_of(name);
+    CHECK_FALSE(result.off_after_s);
+    CHECK(result.detected_as == protocol::Fault::none);
+    CHECK(result.peak_force_N > 0.7);  // 0.54 N without models
+    CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
+    CHECK(result.energy_J < 0.01);
+    CHECK(result.recovery == Recovery::none_needed);
+  }
+}
+
 TEST_CASE("an unplugged cable or a suspended bus switches the force off within 5 ms and raises usb_gone") {
   for (const char* name : {"usb_cut wall 1", "bus_suspended motion 2"}) {
     CAPTURE(name);

@@ -83,13 +83,28 @@ void BoardRun::read_poses() {
   }
 }
 
-void BoardRun::command(protocol::Command command) {
+void BoardRun::use_device(const std::function<void(device::Device&)>& use) {
   if (!device_) return;
   try {
-    device_->send(command);
+    use(*device_);
   } catch (const device::Error&) {
     let_go_of_device();
   }
+}
+
+void BoardRun::command(protocol::Command command) {
+  use_device([&](device::Device& device) { device.send(command); });
+}
+
+void BoardRun::place(const device::Shapes& shapes) {
+  use_device([&](device::Device& device) {
+    device.claim();
+    device.place_shapes(shapes);
+  });
+}
+
+void BoardRun::send(const device::LocalModel& model, const device::ForceRequest& force) {
+  use_device([&](device::Device& device) { device.send_local_model(model, force); });
 }
 
 void BoardRun::run(double time_s, bool sends_heartbeats) {

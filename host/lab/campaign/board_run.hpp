@@ -39,6 +39,9 @@ class BoardRun {
   bool wait_for(const std::function<bool(const device::Pose&)>& condition, double limit_s);
   bool wait_for(protocol::State state, double limit_s);
   void command(protocol::Command command);
+  /// Claims the arm. Does nothing without a device.
+  void place(const device::Shapes& shapes);
+  void send(const device::LocalModel& model, const device::ForceRequest& force);
 
   /// The newest pose; std::nullopt before the first pose and after a disconnection.
   const std::optional<device::Pose>& pose() const { return pose_; }
@@ -57,6 +60,7 @@ class BoardRun {
 
  private:
   void pass(double time_s);
+  void use_device(const std::function<void(device::Device&)>& use);
   void read_poses();
   void let_go_of_device();
   std::vector<device::Endpoint> boot_loaders() const;

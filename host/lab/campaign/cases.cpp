@@ -126,6 +126,10 @@ std::string CaseFault::name() const {
     case Deed::nothing: break;
     case Deed::fast_hand: return "fast_hand";
     case Deed::bus_suspended: return "bus_suspended";
+    case Deed::models_lost: return "models_lost";
+    case Deed::models_stale: return "models_stale";
+    case Deed::models_malformed: return "models_malformed";
+    case Deed::models_contradictory: return "models_contradictory";
   }
   if (!fault) return "none";
   std::string name(protocol::info(*fault).name);
@@ -156,6 +160,8 @@ std::vector<CaseFault> case_faults() {
   }
   faults.push_back({.deed = Deed::bus_suspended});
   faults.push_back({.deed = Deed::fast_hand});
+  for (const Deed deed : {Deed::models_lost, Deed::models_stale, Deed::models_malformed, Deed::models_contradictory})
+    faults.push_back({.deed = deed});
   return faults;
 }
 

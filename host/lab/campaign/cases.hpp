@@ -57,7 +57,13 @@ enum class Deed : std::uint8_t {
   nothing,
   fast_hand,
   bus_suspended,  ///< the PC suspends, or the last program that uses the board through USB/IP is killed
+  // A program sends a local model each millisecond. After a third of the observation, its models are wrong:
+  models_lost,           ///< the program sends nothing
+  models_stale,          ///< the models answer an old pose
+  models_malformed,      ///< the models have a material that does not exist
+  models_contradictory,  ///< each model contradicts the previous one
 };
+constexpr bool is_about_models(Deed deed) { return deed >= Deed::models_lost; }
 
 /// An injected fault with its location, or another event (Deed). The control case has neither a fault nor a Deed.
 struct CaseFault {
@@ -68,7 +74,7 @@ struct CaseFault {
   Deed deed = Deed::nothing;
 
   bool is_fault_free() const { return !fault && deed == Deed::nothing; }
-  std::string name() const;  ///< in the format of --inject, or `none`, `bus_suspended` or `fast_hand`
+  std::string name() const;  ///< in the format of --inject, or `none`, or the name of the event
 
   auto operator<=>(const CaseFault&) const = default;
 };

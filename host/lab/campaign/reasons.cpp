@@ -268,11 +268,22 @@ std::string_view reason_of_idle_wire(InjectedFault fault, Wire wire) {
   return reason_of_wire(wire);
 }
 
+std::string_view reason_of_models(Deed deed) {
+  switch (deed) {
+    case Deed::models_lost: return "A model fades 20 ms after its last report. The end of a program is no fault.";
+    case Deed::models_stale:
+    case Deed::models_malformed: return "The board refuses the models and counts them, and the last model fades.";
+    case Deed::models_contradictory: return "Each model is valid, and a new model does not raise the force.";
+    default: return "";
+  }
+}
+
 }  // namespace
 
 std::string_view reason_with_force(const CaseFault& put_in) {
   if (put_in.deed == Deed::fast_hand) return "No reason is known: the speed is checked in each control period.";
   if (put_in.deed == Deed::bus_suspended) return host_is_missed;
+  if (is_about_models(put_in.deed)) return reason_of_models(put_in.deed);
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
@@ -290,6 +301,7 @@ std::string_view reason_with_force(const CaseFault& put_in) {
 std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation) {
   if (put_in.deed == Deed::fast_hand) return "Without a force, the hand speed is not limited.";
   if (put_in.deed == Deed::bus_suspended) return no_force_to_lose;
+  if (is_about_models(put_in.deed)) return "Without a force, a local model moves nothing.";
   const InjectedFault fault = *put_in.fault;
   const bool is_starting = situation == CaseSituation::starting;
   if (is_tested_by_pulses(put_in) && (is_starting || situation == CaseSituation::testing)) return pulses_were_over;
@@ -323,7 +335,7 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
 
 std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situation) {
   constexpr std::string_view unknown = "No reason is known: each cause that switches the bridges off is reported.";
-  if (put_in.deed == Deed::fast_hand) return unknown;
+  if (put_in.deed == Deed::fast_hand || is_about_models(put_in.deed)) return unknown;
   const std::string_view usb_gone = situation == CaseSituation::landing ? falls_anyway : unknown;
   if (put_in.deed == Deed::bus_suspended) return usb_gone;
   switch (*put_in.fault) {

@@ -10,6 +10,7 @@
 #include "host/client/local/private_folder.hpp"
 #include "host/lab/campaign/board_run.hpp"
 #include "host/lab/campaign/handling.hpp"
+#include "host/lab/campaign/model_faults.hpp"
 #include "protocol/reports.hpp"
 
 #include "host/lab/campaign/use.hpp"
@@ -230,7 +231,10 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
   result.bridges_were_on = !is_before_power(the_case) && bridges_drive(before);
   put_in(board, the_case.fault, parameters, result);
   control.meter_start();
-  board.run(observed_s, false);
+  if (is_about_models(the_case.fault.deed))
+    run_with_models(board, the_case.fault.deed, observed_s);
+  else
+    board.run(observed_s, false);
 
   const auto after = control.truth();
   const auto reading = control.meter_read();

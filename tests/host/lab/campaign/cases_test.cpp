@@ -38,7 +38,7 @@ TEST_CASE("the campaign lists every fault in every situation, as often as requir
   CHECK(of_three > 40);
   CHECK(cases.size() == (case_faults().size() * 3 + static_cast<std::size_t>(of_three) * 2) * 12);
   CHECK(cases[0].fault.is_fault_free());
-  CHECK(case_faults().back().deed == Deed::fast_hand);
+  CHECK(case_faults().back().deed == Deed::models_contradictory);
   for (const auto& row : protocol::injection_table) {
     CAPTURE(row.name);
     for (const CaseSituation situation : situations)
@@ -63,6 +63,7 @@ TEST_CASE("the campaign lists every fault in every situation, as often as requir
   CHECK_FALSE(names.contains("none starting 4"));
   CHECK(names.contains("bus_suspended limited 2"));
   CHECK(names.contains("fast_hand rest 3"));
+  CHECK(names.contains("models_stale wall 2"));
   // Some faults have cases with the default amount and with a second amount.
   for (const char* amount : {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag",
                              "analog_sag=3.5", "main_loop_stalled", "main_loop_stalled=0.012"})
@@ -156,7 +157,8 @@ TEST_CASE("at_another moves a fault of one of three parts to another part, and l
   CHECK(moved("wire_low:gimbal[1]", 1) == "wire_low:gimbal[0]");
   CHECK(moved("wires_shorted:motor_current[1]+motor_current[2]", 3) ==
         "wires_shorted:motor_current[2]+motor_current[0]");
-  for (const char* of_none : {"none", "bus_suspended", "fast_hand", "supply_cut", "wire_high:bridge_enable", "ram_bit"})
+  for (const char* of_none :
+       {"none", "bus_suspended", "fast_hand", "models_lost", "supply_cut", "wire_high:bridge_enable", "ram_bit"})
     CHECK(moved(of_none, 3) == of_none);
   for (const CaseFault& fault : listed)
     for (const unsigned motor : {1, 2, 3}) CHECK(listed_fault(at_another(fault, motor)) == fault);
