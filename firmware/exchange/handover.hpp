@@ -20,6 +20,11 @@ class Handover {
 
   /// Returns the slot for the next value. Returns null until the interrupt has accepted the previous value.
   T* next() { return offered_.load() ? nullptr : &slots_[used_ ^ 1u]; }
+  /// Withdraws a value that the interrupt has not accepted, and returns the slot for the next value.
+  T& withdraw() {
+    offered_.store(false);
+    return slots_[used_ ^ 1u];
+  }
   /// Returns true if a value has been offered but not accepted. While is_offered() returns false, used() does not
   /// change.
   bool is_offered() const { return offered_.load(); }

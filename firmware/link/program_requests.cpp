@@ -361,18 +361,12 @@ protocol::RequestResult ProgramRequests::accept_shapes(std::span<const std::byte
 
 void ProgramRequests::driver_gone() {
   newest_sequence_.reset();
-  if (control::ForceTarget* next = forces_.next()) {
-    *next = {};
-    forces_.offer();
-  }
-  if (control::Shapes* next = shapes_.next()) {
-    *next = {};
-    shapes_.offer();
-  }
-  if (control::LocalModel* next = models_.next()) {
-    *next = {};
-    models_.offer();
-  }
+  forces_.withdraw() = {};
+  forces_.offer();
+  shapes_.withdraw() = {};
+  shapes_.offer();
+  models_.withdraw() = {};
+  models_.offer();
 }
 
 }  // namespace inkwell::link

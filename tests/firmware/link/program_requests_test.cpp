@@ -281,7 +281,8 @@ TEST_CASE("forces and local models count lost reports together") {
 TEST_CASE("shapes and force end with the driver") {
   link::ProgramRequests requests;
   requests.accept_shapes(bytes(one_plane()));
-  REQUIRE(requests.take_shapes() != nullptr);
+  SUBCASE("that the interrupt has accepted") { REQUIRE(requests.take_shapes() != nullptr); }
+  SUBCASE("that the interrupt has not accepted") {}
   requests.driver_gone();
   const control::Shapes* shapes = requests.take_shapes();
   REQUIRE(shapes != nullptr);
