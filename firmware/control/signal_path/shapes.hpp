@@ -84,7 +84,7 @@ class LivingShapes {
   std::uint32_t above_solid_ = 0;  ///< one bit per shape above the near solid that was examined last
   std::uint32_t above_ = 0;        ///< the same for the other shapes
   bool is_turn_of_near_solids_ = false;
-  std::uint32_t aged_ = 0;         ///< number of the shape whose life was examined last
+  std::uint32_t aged_ = 0;  ///< number of the shape whose life was examined last
 };
 
 static_assert(Shapes::maximum <= 32, "LivingShapes has one bit per shape");

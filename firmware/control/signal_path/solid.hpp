@@ -15,8 +15,8 @@ struct Plane {
 };
 
 /// A shape is near if its distance from the proxy is smaller. Other shapes are examined in turn: until the next
-/// examination, at most 50 periods later, a proxy at 2 m/s moves by 5 mm. A proxy that loses its support moves at most by
-/// the depth of the probe.
+/// examination, at most 50 periods later, a proxy at 2 m/s moves by 5 mm. A proxy that loses its support moves at most
+/// by the depth of the probe.
 constexpr float near_margin_m(float depth_m) { return 0.006f + 2.0f * depth_m; }
 
 /// Distances from a core below 0.1 um give no reliable direction.

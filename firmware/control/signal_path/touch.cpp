@@ -126,16 +126,16 @@ Friction find_friction(const Surface& surface, const Vector3& lag_m, const Vecto
   return {part * held_N, (part * surface.m_per_N) * held_N, true};
 }
 
-/// Returns the vector from the frictionless proxy to a held point. The held point, relative to the probe, first leaves
-/// the barriers, and then falls along the normal until it touches a barrier. In a groove, the point may be on one of
-/// the two surfaces.
+/// Returns the vector from the frictionless proxy to a held point. The held point, relative to the probe, leaves the
+/// barriers. If it is in none of them, it falls along the normal by its distance from the nearest barrier. In a groove,
+/// the point may be on one of the surfaces.
 Vector3 find_lag_m(const Barriers& barriers, const Support& support, Vector3 held_m, const Vector3& normal) {
+  float height_m = 1.0f;
   for (std::size_t i = 0; i < barriers.count; ++i) {
     const float depth_m = depth_at(barriers.list[i], held_m);
     if (depth_m > 0.0f) held_m = held_m + depth_m * barriers.list[i].normal;
+    height_m = least(height_m, depth_m > 0.0f ? 0.0f : -depth_m);
   }
-  float height_m = 1.0f;
-  for (std::size_t i = 0; i < barriers.count; ++i) height_m = least(height_m, -depth_at(barriers.list[i], held_m));
   return held_m - height_m * normal - support.out_m;
 }
 
@@ -162,11 +162,16 @@ void find_support(const Barriers& barriers, Support& support) {
 }
 
 void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
+  Barrier* free = &list[count];
   if (count == maximum) {
-    if (depth_m <= deepest_m) return;
-    --count;  // the deepest barrier replaces the last one
+    do {
+      if (replaced == list.data()) return;
+      free = --replaced;
+    } while (free->depth_m > 0.0f);
+  } else {
+    ++count;
   }
-  Barrier& barrier = list[count++];
+  Barrier& barrier = *free;
   barrier.normal.x = normal.x;
   barrier.normal.y = normal.y;
   barrier.normal.z = normal.z;

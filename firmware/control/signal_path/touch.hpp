@@ -35,12 +35,13 @@ struct Barrier {
 /// Depth above which a barrier excludes a point. Rounding errors are smaller.
 inline constexpr float depth_tolerance_m = 1e-7f;
 
-/// Barriers of one period. If there are more barriers, the list contains the deepest one and the first ones.
+/// Barriers of one period. If there are more barriers, those that exclude the probe replace the others.
 struct Barriers {
   static constexpr std::size_t maximum = 8;
 
   std::array<Barrier, maximum> list{};
   std::size_t count = 0;
+  Barrier* replaced = nullptr;       ///< in a full list, this barrier and all later ones exclude the probe
   const Barrier* deepest = nullptr;  ///< of the barriers that exclude the probe; null for none
   float deepest_m = 0.0f;
   /// A barrier at this distance from the probe may exclude the point to which other barriers push the proxy.
@@ -48,6 +49,7 @@ struct Barriers {
 
   void clear() {
     count = 0;
+    replaced = list.data() + maximum;
     deepest = nullptr;
     deepest_m = depth_tolerance_m;
   }
@@ -128,7 +130,8 @@ class Touch {
   bool slides_ = false;
   static constexpr float first_rise_part = 0.0625f;
   /// Motion of surfaces that moves the proxy as far as one surface does. In a groove, the proxy moves faster than the
-  /// surfaces: by the sum of the depths, divided by the distance from the probe to the proxy.
+  /// surfaces: by the sum of the depths, divided by the distance from the probe to the proxy. A surface that begins to
+  /// touch moves by the part of the previous period.
   float rise_part_ = first_rise_part;
   // Results of this period are members, because the initialization of local variables takes cycles.
   Barriers barriers_;

@@ -68,7 +68,7 @@ class Refusals(unittest.TestCase):
         divisions = " ".join(f"x = {i}.5f / x;" for i in range(120))
         result = self.price(f'extern "C" float step_force_law(float x) {{ {divisions} return x; }}')
         self.assert_refused(result, "the force law may take ")
-        self.assertRegex(result.stderr, r"may take \d+ cycles in a control period, but only 1000 are left for it\.")
+        self.assertRegex(result.stderr, r"may take \d+ cycles in a control period, but only 800 are left for it\.")
 
     def test_a_loop_without_a_known_count_is_refused_with_its_location(self):
         result = self.price('extern "C" float step_force_law(float x, int n) {\n'

@@ -271,6 +271,30 @@ TEST_CASE("a probe between ten posts is pushed out of the table below") {
   for (int i = 0; i < 20; ++i) CHECK(hand.at(hand.probe_m).z == doctest::Approx(3.0f).epsilon(1e-2));
 }
 
+TEST_CASE("a probe at rest in a corner behind seven posts has a constant force") {
+  Hand hand;
+  for (std::size_t i = 0; i < 7; ++i)
+    put_solid(hand.shapes, i,
+              {.core = Core::segment,
+               .centre_m = {-0.0018f, -0.0024f + 8e-4f * static_cast<float>(i), 0.0f},
+               .axes = {up},
+               .half_m = {0.02f},
+               .radius_m = 3e-4f},
+              smooth);
+  Solid block = table;
+  block.centre_m = {0.05f, 0.0f, 0.0f};
+  block.half_m = {0.0495f, 0.05f, 0.0295f};
+  put_solid(hand.shapes, 14, block, smooth);
+  put_solid(hand.shapes, 15, table, smooth);
+  hand.at({-0.001f, 0.0f, 0.002f});
+  hand.place();
+  hand.move_to({-0.001f, 0.0f, -0.002f});
+  const Vector3 force_N = hand.move_to({0.0026f, 0.0f, -0.002f});
+  CHECK(force_N.x == doctest::Approx(-2.6f).epsilon(2e-2));
+  CHECK(force_N.z == doctest::Approx(2.0f).epsilon(2e-2));
+  for (int i = 0; i < 100; ++i) CHECK(length(hand.at(hand.probe_m) - force_N) < 0.1f);
+}
+
 TEST_CASE("a probe that is pushed through the middle of a solid is still pushed back to its entry") {
   const Solid solids[] = {
       {.core = Core::point, .radius_m = 0.004f},
@@ -434,7 +458,7 @@ TEST_CASE("a surface that appears under the tip moves outward slowly, and its wo
   CHECK(work_J == doctest::Approx(0.5f * 1000.0f * 1e-6f).scale(0).epsilon(0.02));  // of the spring
 }
 
-TEST_CASE("surfaces of any stiffness rise by at most 5 mN in a period, also in grooves of 16 degrees") {
+TEST_CASE("two equal surfaces of any stiffness rise by at most 5 mN in a period, also in grooves of 16 degrees") {
   for (const float stiffness_N_per_m : {100.0f, 1000.0f, 3000.0f})
     for (const float lean : {0.0f, 0.5f, 0.866f, 0.99f}) {
       CAPTURE(stiffness_N_per_m);
