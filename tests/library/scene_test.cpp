@@ -146,7 +146,7 @@ TEST_CASE("a mesh ball is felt: force, and contact with point, normal, object an
   CHECK(length(arm.rest().force_N) < 1e-6);
   CHECK(arm.contacts().empty());
   CHECK(inkwell_scene_remove(arm.arm, number) == INKWELL_BAD_ARGUMENT);
-  CHECK(says("no object"));
+  CHECK(says("does not contain object"));
 }
 
 TEST_CASE("each primitive is felt, with its material, which can be changed") {

@@ -162,7 +162,7 @@ void find_support(const Barriers& barriers, Support& support) {
 }
 
 void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
-  Barrier* free = &list[count];
+  Barrier* free = list.data() + count;
   if (count == maximum) {
     do {
       if (replaced == list.data()) return;

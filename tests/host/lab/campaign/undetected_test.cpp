@@ -249,6 +249,9 @@ TEST_CASE("interrupts have separate reasons, and so do motors in the self-test")
     CHECK(row_of(exception, "rest").find("the brown-out reset also monitor this supply") != std::string::npos);
   CHECK(row_of("exception_lost:34", "rest").find("No reason is known") != std::string::npos);
   CHECK(row_of("exception_late:34", "rest").find("The delay is shorter than") != std::string::npos);
+  CHECK(row_of("models_lost", "rest").find("A model fades 20 ms") != std::string::npos);
+  CHECK(row_of("models_stale", "rest").find("The board refuses the models") != std::string::npos);
+  CHECK(row_of("models_contradictory", "rest").find("Each model is valid") != std::string::npos);
   for (const char* fault : {"leg_slow:2A", "motor_open:2", "shunt_frozen:2", "wire_open:motor_current[1]",
                             "wires_shorted:bridges[1].leg_a+bridges[1].leg_b"}) {
     CAPTURE(fault);
@@ -273,7 +276,7 @@ TEST_CASE("each undetected fault has a reason in each of the three tables") {
        {Table{"ready", {}, "ready | "}, {"rest", 1e-6, "rest | - | "}, {"rest", {}, "rest | without use | - | "}}) {
     std::vector<Result> results;
     for (const CaseFault& fault : case_faults())
-      if (fault.fault) {
+      if (fault.fault || is_about_models(fault.deed)) {
         results.push_back(seen(fault.name(), table.situation, 1));
         results.back().off_after_s = table.off_after_s;
       }
@@ -337,10 +340,6 @@ TEST_CASE("faults without force or without a report have separate reasons") {
         {"bus_suspended", "ready", "A lost USB connection is reported only while the"},
         {"bus_suspended", "landing", "The force was already decreasing after it was"},
         {"bus_suspended", "rest", "No reason is known: each cause that switches the bridges off is reported."},
-        {"models_lost", "wall", "A model fades 20 ms after its last report."},
-        {"models_stale", "rest", "The board refuses the models and counts them"},
-        {"models_malformed", "rest", "The board refuses the models and counts them"},
-        {"models_contradictory", "motion", "Each model is valid"},
         {"models_contradictory", "ready", "Without a force, a local model moves nothing."},
         {"host_silent", "ready", "A silent host is detected only while the force is on."},
         {"host_silent", "rest", "No host polls the"},
