@@ -22,8 +22,8 @@ constexpr float near_margin_m(float depth_m) { return 0.006f + 2.0f * depth_m; }
 /// Distances from a core below 0.1 um give no reliable direction.
 inline constexpr float smallest_squared_m2 = 1e-14f;
 
-/// All points within `radius_m` of a core. The core of a sphere is its center. The core of a capsule is a
-/// segment. The core of a rounded box is a smaller box, and the core of a rounded cylinder is a smaller cylinder.
+/// All points within `radius_m` of a core. The core of a sphere is its center. The core of a capsule is a segment. The
+/// core of a rounded box is a smaller box, and the core of a rounded cylinder is a smaller cylinder.
 struct Solid {
   enum class Core : std::uint32_t { nothing, point, segment, cylinder, box };
 

@@ -129,9 +129,9 @@ class Touch {
   bool touches_ = false;
   bool slides_ = false;
   static constexpr float first_rise_part = 0.0625f;
-  /// Motion of surfaces that moves the proxy as far as one surface does. In a groove, the proxy moves faster than the
-  /// surfaces: by the sum of the depths, divided by the distance from the probe to the proxy. A surface that begins to
-  /// touch moves by the part of the previous period.
+  /// Part of the largest step of recessed surfaces. In a groove, the proxy moves faster than the surfaces by a factor:
+  /// the sum of the depths, divided by the distance from the probe to the proxy. The part is the inverse square of the
+  /// factor. A surface that begins to touch moves by the part of the previous period.
   float rise_part_ = first_rise_part;
   // Results of this period are members, because the initialization of local variables takes cycles.
   Barriers barriers_;
