@@ -11,7 +11,7 @@ namespace inkwell::contact {
 namespace {
 
 /// A shorter move is the last.
-constexpr double still_m = 2e-6;
+constexpr double still_m = 3e-6;
 constexpr int moves_max = 24;
 constexpr int searches_max = 30;
 constexpr int obstacles_max = 12;
