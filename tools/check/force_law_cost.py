@@ -20,7 +20,7 @@ from call_graph import Function, read_functions, readable, source_location
 from interrupt_rules import LEAVES, outer_loops, paths_of
 
 # With three touched walls and a local model of three features, about 1050 of the 8400 cycles of a period remain. A
-# force law may use 800 cycles; 250 cycles pass between the start of the period and the start of the interrupt.
+# force law may use 800 cycles; about 250 cycles pass between the start of the period and the start of the interrupt.
 BUDGET_CYCLES = 800
 
 COSTS = pathlib.Path(__file__).resolve().parents[2] / "boards/stm32f405/timing/costs.toml"

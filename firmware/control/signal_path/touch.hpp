@@ -128,7 +128,7 @@ class Touch {
   Vector3 proxy_m_;
   bool touches_ = false;
   bool slides_ = false;
-  static constexpr float first_rise_part = 0.0625f;
+  static constexpr float first_rise_part = 0.0625f;  ///< doubles in each period of a touch, up to 1
   /// Part of the largest step of recessed surfaces. In a groove, the proxy moves faster than the surfaces by a factor:
   /// the sum of the depths, divided by the distance from the probe to the proxy. The part is the inverse square of the
   /// factor. A surface that begins to touch moves by the part of the previous period.

@@ -1,6 +1,7 @@
 #include "host/lab/campaign/model_faults.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace inkwell::campaign {
 namespace {

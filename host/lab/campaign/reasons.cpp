@@ -270,7 +270,7 @@ std::string_view reason_of_idle_wire(InjectedFault fault, Wire wire) {
 
 std::string_view reason_of_models(Deed deed) {
   switch (deed) {
-    case Deed::models_lost: return "A model fades 20 ms after its last report. The end of a program is no fault.";
+    case Deed::models_lost: return "A model fades 20 ms after its last report. The end of a program is not a fault.";
     case Deed::models_stale:
     case Deed::models_malformed: return "The board refuses the models and counts them, and the last model fades.";
     case Deed::models_contradictory: return "Each model is valid, and a new model does not raise the force.";
