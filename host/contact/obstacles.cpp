@@ -137,59 +137,106 @@ bool is_in_reach(const PlacedObject& placed, const Move& move) {
   return glm::dot(from_middle_m, from_middle_m) <= reach_m * reach_m;
 }
 
+/// The closest obstacle among those that were tried.
+class ClosestObstacle {
+ public:
+  explicit ClosestObstacle(const Move& move) : move_(move) {}
+
+  const std::optional<Obstacle>& found() const { return found_; }
+  /// A more distant face is not the result.
+  double limit_m() const { return least_m_ + equally_close_m; }
+
+  void try_solid(std::size_t index, const PlacedObject& placed) {
+    const SolidPoint point = closest_point_of_solid(placed.object->shape, placed.to_object(move_.start_m));
+    if (point.distance_m >= least_m_ - equally_close_m) return;
+    if (const auto space = excluding_space(point, placed, move_)) set({index, 0}, point.distance_m, *space, move_);
+  }
+
+  void try_face(std::size_t index, const PlacedObject& placed, const LocalMove& local, std::uint32_t face) {
+    const geometry::Triangle triangle = placed.surface->triangle(face);
+    if (local.is_protected(triangle)) return;
+    const glm::dvec3 way_m = local.move.start_m - geometry::closest_point(local.move.start_m, triangle).point_m;
+    const double squared_m2 = glm::dot(way_m, way_m);
+    if (squared_m2 >= limit_m() * limit_m()) return;
+    const double distance_m = std::sqrt(squared_m2);
+    const auto space = excluding_space(triangle, local.move, way_m, distance_m);
+    if (!space) return;
+    if (distance_m > least_m_ - equally_close_m && space->height_m(local.move.way_m) >= lowest_m_) return;
+    set({index, face}, distance_m, *space, local.move);
+    found_->space.normal = placed.rotation * space->normal;
+  }
+
+ private:
+  void set(const FaceOfObject& face, double distance_m, const HalfSpace& space, const Move& move) {
+    found_ = {face, distance_m, space};
+    least_m_ = distance_m;
+    lowest_m_ = space.height_m(move.way_m);
+  }
+
+  const Move& move_;
+  std::optional<Obstacle> found_;
+  double least_m_ = 1e6;
+  double lowest_m_ = 0;  // of the end of the move above the border of the found obstacle
+};
+
 }  // namespace
 
-std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, const Move& move,
+bool NearFaces::contain(const Move& move) const {
+  return glm::distance(center_m, move.start_m) + glm::length(move.way_m) + move.radius_m <= reach_m;
+}
+
+void NearFaces::find(std::span<const PlacedObject> objects, const glm::dvec3& center, double reach) {
+  center_m = center;
+  reach_m = reach;
+  count = 0;
+  for (std::size_t index = 0; index < objects.size(); ++index) {
+    const PlacedObject& placed = objects[index];
+    if (!placed.is_felt || !placed.surface || !is_in_reach(placed, {center, {}, reach, false})) continue;
+    const Tree& tree = placed.surface->tree();
+    const glm::vec3 local_m{placed.to_object(center)};
+    const float limit_m2 = geometry::square(tree.padded_m(static_cast<float>(reach)));
+    const auto is_near = [&](const Tree::Node& node) {
+      return reach_m != too_many && node.squared_distance_m2(local_m, limit_m2) <= limit_m2;
+    };
+    tree.visit_if(is_near, [&](std::uint32_t face) {
+      if (count < list.size())
+        list[count++] = {index, face};
+      else
+        reach_m = too_many;
+    });
+  }
+}
+
+std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, const NearFaces& near, const Move& move,
                                       std::span<const HalfSpace> active) {
-  std::optional<Obstacle> nearest;
-  double least_m = 1e6;
-  double lowest_m = 0;  // of the end of the move above the border of the nearest obstacle
+  const double reach_m = move.radius_m + glm::length(move.way_m);
+  const bool is_near = near.contain(move);
+  ClosestObstacle closest(move);
+  std::size_t number = 0;  // of the near face
   for (std::size_t index = 0; index < objects.size(); ++index) {
     const PlacedObject& placed = objects[index];
     if (!placed.is_felt) continue;
     if (!placed.surface) {
-      const SolidPoint point = closest_point_of_solid(placed.object->shape, placed.to_object(move.start_m));
-      if (point.distance_m >= least_m - equally_close_m) continue;
-      const auto space = excluding_space(point, placed, move);
-      if (!space) continue;
-      nearest = {{index, 0}, point.distance_m, *space};
-      least_m = point.distance_m;
-      lowest_m = space->height_m(move.way_m);
+      closest.try_solid(index, placed);
       continue;
     }
     if (!is_in_reach(placed, move)) continue;
-    const geometry::Surface& surface = *placed.surface;
     const LocalMove local(placed, move, active);
-    std::optional<Obstacle> found;
-    const auto try_face = [&](std::uint32_t face) {
-      const geometry::Triangle triangle = surface.triangle(face);
-      if (local.is_protected(triangle)) return;
-      const glm::dvec3 way_m = local.move.start_m - geometry::closest_point(local.move.start_m, triangle).point_m;
-      const double squared_m2 = glm::dot(way_m, way_m);
-      if (squared_m2 >= (least_m + equally_close_m) * (least_m + equally_close_m)) return;
-      const double distance_m = std::sqrt(squared_m2);
-      const auto space = excluding_space(triangle, local.move, way_m, distance_m);
-      if (!space) return;
-      const double height_m = space->height_m(local.move.way_m);
-      if (distance_m > least_m - equally_close_m && height_m >= lowest_m) return;
-      found = {{index, face}, distance_m, *space};
-      least_m = distance_m;
-      lowest_m = height_m;
-    };
-    const double reach_m = move.radius_m + glm::length(move.way_m);
-    auto search_m = static_cast<float>(std::min(least_m, reach_m));
-    surface.tree().visit_closest_if(
+    if (is_near) {
+      while (number < near.count && near.list[number].object < index) ++number;
+      for (; number < near.count && near.list[number].object == index; ++number)
+        closest.try_face(index, placed, local, near.list[number].face);
+      continue;
+    }
+    auto search_m = static_cast<float>(std::min(closest.limit_m(), reach_m));
+    placed.surface->tree().visit_closest_if(
         glm::vec3{local.move.start_m}, search_m, [&](const Tree::Node& node) { return local.concerns(node); },
         [&](std::uint32_t face, float& radius_m) {
-          try_face(face);
-          radius_m = std::min(radius_m, static_cast<float>(least_m + equally_close_m));
+          closest.try_face(index, placed, local, face);
+          radius_m = std::min(radius_m, static_cast<float>(closest.limit_m()));
         });
-    if (found) {
-      found->space.normal = placed.rotation * found->space.normal;
-      nearest = found;
-    }
   }
-  return nearest;
+  return closest.found();
 }
 
 std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, const Move& move,

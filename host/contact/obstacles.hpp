@@ -1,6 +1,7 @@
 // Parts of objects that limit a move of the tip.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -33,9 +34,24 @@ struct Obstacle {
   HalfSpace space;
 };
 
+/// The triangles near a point, by object. One search in the trees finds them for several short moves.
+struct NearFaces {
+  static constexpr double too_many = -1;
+
+  glm::dvec3 center_m{};
+  double reach_m = 0;  ///< 0: no search yet; `too_many`: more triangles than the list can hold
+  std::size_t count = 0;
+  std::array<FaceOfObject, 96> list;  // has no initial values, because they cost time
+
+  void find(std::span<const PlacedObject> objects, const glm::dvec3& center, double reach);
+  /// True if the tip cannot touch other triangles during the move.
+  bool contain(const Move& move) const;
+};
+
 /// The obstacle closest to the start whose half-spaces exclude the end of the move. Nothing if the move is free. The
 /// half-spaces `active` protect parts of objects: a tip in such a half-space cannot touch triangles on its other side.
-std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, const Move& move,
+/// If `near` contains the move, no tree is searched.
+std::optional<Obstacle> find_obstacle(std::span<const PlacedObject> objects, const NearFaces& near, const Move& move,
                                       std::span<const HalfSpace> active);
 
 /// The same for one face, if its inside is closest to the start.

@@ -100,6 +100,8 @@ class Tree {
   std::size_t memory_bytes() const { return nodes_.capacity() * sizeof(Node); }
   /// Largest rounding error of the boxes.
   float padding_m() const { return padding_m_; }
+  /// A radius that covers the rounding of coordinates.
+  float padded_m(float radius_m) const { return radius_m + padding_m_ + 1e-6f * radius_m; }
   bool is_empty() const { return nodes_.empty(); }
 
   /// Calls `visit(face)` for all faces of nodes closer than the radius.
@@ -175,8 +177,6 @@ class Tree {
   }
 
  private:
-  /// Covers the rounding of coordinates.
-  float padded_m(float radius_m) const { return radius_m + padding_m_ + 1e-6f * radius_m; }
   static bool faces(const glm::vec3& point_m, const Node& node, bool both_sides);
 
   std::vector<Node> nodes_;

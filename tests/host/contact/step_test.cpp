@@ -113,6 +113,23 @@ TEST_CASE("edges between coplanar triangles cause no sideways force and do not s
   }
 }
 
+TEST_CASE("the tip slides around a ball and into a groove of very small triangles") {
+  const geometry::Mesh ball = geometry::make_ball(0.005, 0, 6);
+  Scene scene = scene_with(surface_of(ball));
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects[1].id = 6;
+  scene.objects[1].placement.position_m = {0.009, 0, 0};
+  Hand hand{std::move(scene), 0.001, {0, 0, 0.01}};
+  for (int number = 0; number < 300; ++number) {
+    const double angle_rad = 0.004 * number;
+    hand.go(0.0055 * glm::dvec3{std::sin(angle_rad), 0, std::cos(angle_rad)});
+    CHECK(glm::length(hand.last.proxy_m) > 0.00599);
+    CHECK(glm::distance(hand.last.proxy_m, glm::dvec3{0.009, 0, 0}) > 0.00599);
+  }
+  CHECK(hand.last.proxy_m.x == doctest::Approx(0.0045).epsilon(0.01));
+  CHECK(hand.last.model.count == 2);
+}
+
 TEST_CASE("a corner of three faces holds the tip") {
   // The inside of a box: all faces turned.
   geometry::Mesh mesh = geometry::make_box({0.04, 0.04, 0.04});
