@@ -162,6 +162,7 @@ bool decode_feature(const protocol::FeatureEntry& entry, const protocol::LocalMo
     case protocol::FeatureKind::sphere:
       feature.radius_m = length_m(entry.lengths[1]);
       feature.centre_m = anchor_m - (length_m(entry.lengths[0]) + feature.radius_m) * feature.axis;
+      feature.axis = {};
       break;
     case protocol::FeatureKind::cylinder: {
       const auto across = protocol::across(direction);
@@ -278,7 +279,6 @@ std::optional<control::ForceTarget> decode_local_model(std::span<const std::byte
   decoded.count = local.feature_count;
   decoded.life_periods = local.life_ms * millisecond_periods;
   decoded.age_s = 0.0f;
-  decoded.turn = 0;
   for (std::size_t i = 0; i < decoded.count; ++i)
     if (!decode_feature(local.features[i], local, materials, decoded.features[i])) return std::nullopt;
   const std::uint32_t interval_periods = local.interval_ms * millisecond_periods;

@@ -17,8 +17,6 @@ constexpr std::array<Vector3, 6> wall_normals{{{1.0f, 0.0f, 0.0f},
                                                {0.0f, 0.0f, 1.0f},
                                                {0.0f, 0.0f, -1.0f}}};
 
-/// Largest increase of the force of a recessed surface in a period.
-constexpr float rise_N = 4e-3f;
 /// Solids whose tangent planes are renewed in the first period of a touch.
 constexpr std::size_t renewals_maximum = 2;
 /// Square of the sine of the smallest angle between two barriers that count as two.
@@ -171,26 +169,19 @@ void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface,
   } else {
     ++count;
   }
-  Barrier& barrier = *free;
-  barrier.normal.x = normal.x;
-  barrier.normal.y = normal.y;
-  barrier.normal.z = normal.z;
-  barrier.depth_m = depth_m;
-  barrier.surface = &surface;
-  barrier.motion = &motion;
-  if (depth_m <= deepest_m) return;
-  deepest_m = depth_m;
-  deepest = &barrier;
+  set(*free, normal, depth_m, surface, motion);
 }
 
 void Touch::follow(LocalModel& model) {
   model_ = &model;
-  model_is_new_ = true;
+  model_rise_part_ = 0.0f;
+  renewed_ = model.features.data();
 #pragma GCC unroll 1
   for (std::size_t i = 0; i < model.count; ++i) {
     Feature& feature = model.features[i];
     const float depth_m = feature.tangent.offset_m - dot(feature.tangent.normal, proxy_m_);
     feature.recess_m = depth_m > 0.0f ? depth_m : 0.0f;
+    feature.tangent.offset_m -= feature.recess_m;
   }
 }
 
@@ -248,27 +239,26 @@ void Touch::add_shapes(const Vector3& probe_m) {
 }
 
 void Touch::add_model(const Vector3& probe_m) {
-  constexpr float recovery_m = LocalModel::recovery_m_per_s * protocol::servo_period_s;
-  // New surfaces do not move before they touch.
-  const float step_part = model_is_new_ ? 0.0f : rise_part_;
-  model_is_new_ = false;
   LocalModel& model = *model_;
-  const std::size_t count = model.count;
-  if (count == 0) return;
-  renew_tangent(model.features[model.turn], proxy_m_, model.age_s);
-  model.turn = model.turn + 1 < count ? model.turn + 1 : 0;
-  const Vector3 at_m = probe_m;
+  Feature* const first = model.features.data();
+  const Feature* const end = first + model.count;
+  if (first == end) return;
+  renewed_->motion.rise_m = 0.0f;
+  Feature* renewed = renewed_ + 1;
+  if (renewed >= end) renewed = first;
+  renewed_ = renewed;
+  renewed->motion.rise_m = least(renewed->recess_m, model_rise_part_ * renewed->rise_m);
+  renewed->recess_m -= renewed->motion.rise_m;
   const float age_s = model.age_s;
+  renew_tangent(*renewed, proxy_m_, age_s);
+  const Vector3 at_m = probe_m;
+  const float height_m = -barriers_.reach_m;
+  static_assert(wall_normals.size() / 2 + protocol::local_features_maximum <= Barriers::maximum, "append needs room");
 #pragma GCC unroll 1
-  for (std::size_t i = 0; i < count; ++i) {
-    Feature& feature = model.features[i];
-    const Plane& tangent = feature.tangent;
-    const float step_m = step_part * least(rise_N * feature.surface.m_per_N, recovery_m);
-    feature.motion.rise_m = least(feature.recess_m, step_m);
-    feature.recess_m -= feature.motion.rise_m;
-    const float depth_m =
-        tangent.offset_m + age_s * feature.tangent_speed_m_per_s - feature.recess_m - dot(tangent.normal, at_m);
-    if (barriers_.is_in_reach(depth_m)) barriers_.add(tangent.normal, depth_m, feature.surface, feature.motion);
+  for (Feature* feature = first; feature != end; ++feature) {
+    const Plane tangent = feature->tangent;
+    const float depth_m = tangent.offset_m + age_s * feature->tangent_speed_m_per_s - dot(tangent.normal, at_m);
+    if (depth_m > height_m) barriers_.append(tangent.normal, depth_m, feature->surface, feature->motion);
   }
 }
 
@@ -299,7 +289,7 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
     rise_part = dot(support.out_m, support.out_m) * per_reach_per_m * per_reach_per_m;
     parts = damper_parts(support, per_reach_per_m);
   }
-  rise_part_ = least(rise_part, 2.0f * rise_part_);
+  rise_part_ = model_rise_part_ = least(rise_part, 2.0f * rise_part_);
   Vector3 normal_sum_N;
   float most_N = 0.0f;
   const Barrier* main = support.barriers[0];

@@ -9,7 +9,8 @@
 // plane is outside the convex object. A new tangent plane is farther from the proxy, so it does not increase the force.
 //
 // A new local model does not increase the force: its barriers recede to the proxy, so the previous proxy remains in the
-// free space, and the nearest free point is not farther from the probe than the previous proxy.
+// free space, and the nearest free point is not farther from the probe than the previous proxy. The features then rise in
+// turn, one in each period.
 #pragma once
 
 #include <array>
@@ -55,6 +56,23 @@ struct Barriers {
   }
   bool is_in_reach(float depth_m) const { return depth_m > -reach_m; }
   void add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion);
+  /// The same for a list that is not full.
+  void append(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
+    set(list[count++], normal, depth_m, surface, motion);
+  }
+
+ private:
+  void set(Barrier& barrier, const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
+    barrier.normal.x = normal.x;
+    barrier.normal.y = normal.y;
+    barrier.normal.z = normal.z;
+    barrier.depth_m = depth_m;
+    barrier.surface = &surface;
+    barrier.motion = &motion;
+    if (depth_m <= deepest_m) return;
+    deepest_m = depth_m;
+    deepest = &barrier;
+  }
 };
 
 /// Barriers that support the nearest free point.
@@ -105,7 +123,7 @@ class Touch {
   void release(const Vector3& probe_m) {
     proxy_m_ = probe_m;
     touches_ = false;
-    rise_part_ = first_rise_part;
+    rise_part_ = model_rise_part_ = first_rise_part;
     barriers_.reach_m = 0.0f;
   }
 
@@ -124,7 +142,7 @@ class Touch {
   void add_model(const Vector3& probe_m);
 
   LocalModel* model_ = nullptr;
-  bool model_is_new_ = false;
+  Feature* renewed_ = nullptr;  ///< feature of the model whose tangent plane was renewed last
   Vector3 proxy_m_;
   bool touches_ = false;
   bool slides_ = false;
@@ -133,6 +151,8 @@ class Touch {
   /// the sum of the depths, divided by the distance from the probe to the proxy. The part is the inverse square of the
   /// factor. A surface that begins to touch moves by the part of the previous period.
   float rise_part_ = first_rise_part;
+  /// The same for the local model. Its new surfaces do not move before they touch.
+  float model_rise_part_ = first_rise_part;
   // Results of this period are members, because the initialization of local variables takes cycles.
   Barriers barriers_;
   Support support_;

@@ -51,13 +51,7 @@ float reciprocal(float value) {
   return estimate;
 }
 
-float reciprocal_square_root(float value) {
-  // Halves and negates the exponent in the bit pattern. The seed error is at most 3.5 %.
-  float estimate = std::bit_cast<float>(0x5F376400u - (std::bit_cast<std::uint32_t>(value) >> 1));
-  const float half = 0.5f * value;
-  for (int i = 0; i < newton_steps; ++i) estimate *= 1.5f - half * estimate * estimate;
-  return estimate;
-}
+float reciprocal_square_root(float value) { return find_reciprocal_square_root(value); }
 
 bool is_finite(float value) {
   constexpr std::uint32_t exponent = 0x7F800000u;

@@ -472,11 +472,11 @@ TEST_CASE("two equal surfaces of any stiffness rise by at most 5 mN in a period,
       step(touch, probe_m);
       LocalModel model =
           model_of({plane_feature({lean, 0, height}, 0, surface), plane_feature({-lean, 0, height}, 0, surface)});
-      model.life_periods = 10000;
+      model.life_periods = 20000;
       follow(touch, model);
       float force_N = 0.0f;
-      const float fastest_N = 1.01f * stiffness_N_per_m * LocalModel::recovery_m_per_s * protocol::servo_period_s;
-      for (int period = 0; period < 8000; ++period) {
+      const float fastest_N = 1.01f * stiffness_N_per_m * control::largest_rise_m;
+      for (int period = 0; period < 16000; ++period) {
         const TouchForce force = step(touch, probe_m);
         CHECK(force.objects_N.z - force_N < 5e-3f);
         if (lean == 0.0f) CHECK(force.objects_N.z - force_N < fastest_N);
@@ -508,7 +508,7 @@ TEST_CASE("an exchange of local models under a pressing hand does not raise the 
       feature.surface = smooth;
       feature.kind = kind < 1 ? FeatureKind::plane : (kind < 2 ? FeatureKind::sphere : FeatureKind::cylinder);
       feature.centre_m = 0.004f * direction();
-      feature.axis = direction();
+      if (feature.kind != FeatureKind::sphere) feature.axis = direction();
       feature.radius_m = kind < 1 ? 0.0f : random.between(0.0005f, 0.01f);
     }
     follow(touch, model);
@@ -519,7 +519,7 @@ TEST_CASE("an exchange of local models under a pressing hand does not raise the 
       largest_N = std::max(largest_N, force_N);
     }
   }
-  CHECK(largest_N > 0.5f);
+  CHECK(largest_N > 0.1f);
 }
 
 TEST_CASE("friction holds the proxy on one surface of a groove, also while both surfaces are nearer to the probe") {
@@ -598,7 +598,7 @@ TEST_CASE("with friction, a probe in a corner of two surfaces stays out of both 
 
 TEST_CASE("a probe that slides around a sphere, a cylinder and a plane of one model feels their radial depth") {
   Touch touch;
-  control::Feature sphere = plane_feature({1, 0, 0}, 0.0f, smooth);
+  control::Feature sphere = plane_feature({}, 0.0f, smooth);
   sphere.kind = FeatureKind::sphere;
   sphere.radius_m = 0.02f;
   control::Feature cylinder = plane_feature({0, 1, 0}, 0.0f, smooth);
