@@ -387,6 +387,7 @@ nlohmann::json Companion::inspect() const {
   known["missing_glyphs"] = fonts_.missing();
   known["fonts_are_loading"] = fonts_.is_loading();
   if (arrived_) known["arrived_at_periods"] = arrived_->time_periods;
+  known["poses_lost"] = view.status.poses_lost;
   if (view.status.applied_at_periods) known["applied_at_periods"] = *view.status.applied_at_periods;
   return known;
 }
