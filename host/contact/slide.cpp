@@ -15,7 +15,7 @@ constexpr double still_m = 3e-6;
 constexpr int moves_max = 24;
 constexpr int searches_max = 30;
 constexpr int obstacles_max = 12;
-/// Longest move for which a list of the near faces is made. The list contains the following, shorter moves too.
+/// Longest move for which a list of the near faces is made. Usually the following, shorter moves need no other list.
 constexpr double listed_way_m = 0.0005;
 constexpr double listed_margin_m = 0.00005;
 

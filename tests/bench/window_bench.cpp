@@ -45,7 +45,7 @@ double share_of_a_core(int process) {
   return (processor_time_s(process) - before_s) / std::chrono::duration<double>(measured_for).count();
 }
 
-/// Leads the hand from the inkwell to the start of a path. The path begins after 1.5 s.
+/// Leads the hand from the inkwell to the start of a path. A path that starts too early raises the fault over_speed.
 void follow(tests::WindowRig& rig, std::vector<device::HandWaypoint> path) {
   const device::Vector3 inkwell_m = rig.true_probe_m();
   rig.control.hand({.holds = true, .target_m = inkwell_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
@@ -121,7 +121,7 @@ void measure(const std::string& layout, const std::string& width, const std::str
   const auto overruns = device::Device::open(*rig.board.find())->information().report.servo_overruns;
   // A busy machine simulates the board more slowly, so there are fewer poses.
   constexpr std::int64_t pose_periods = protocol::servo_rate_Hz / 1000;
-  std::printf("  lost:    %lld of %lld poses, and %u control interrupts of the board\n",
+  std::printf("  lost:    %lld of %lld poses, and %u control interrupts since the start of the board\n",
               static_cast<long long>(increase("poses_lost")),
               static_cast<long long>(increase("arrived_at_periods") / pose_periods), static_cast<unsigned>(overruns));
   std::fflush(stdout);

@@ -29,11 +29,12 @@ struct Feature {
   Surface surface;
   Motion motion;  ///< the velocity is that of `centre_m`
 
-  Plane tangent{.normal = {}, .offset_m = -1.0f};  ///< excludes no point until the feature has a tangent plane
-  float tangent_speed_m_per_s = 0.0f;              ///< of the tangent plane along its normal
+  /// Tangent plane of the recessed surface. It excludes no point until it is found.
+  Plane tangent{.normal = {}, .offset_m = -1.0f};
+  float tangent_speed_m_per_s = 0.0f;  ///< of the tangent plane along its normal
   /// The surface is this far below its final position. The surface moves outward slowly.
   float recess_m = 0.0f;
-  float rise_m = 0.0f;  ///< largest movement outward in a period
+  float rise_limit_m = 0.0f;  ///< largest movement outward in a period
 };
 
 struct LocalModel {
@@ -53,7 +54,8 @@ struct LocalModel {
   if (feature.kind == protocol::FeatureKind::plane) {
     turn_m_per_s = dot(feature.axis_rate_per_s, out_m);
   } else {
-    const float along_m = dot(axis, out_m);
+    // The axis is longer than 1 after a rotation.
+    const float along_m = (2.0f - dot(axis, axis)) * dot(axis, out_m);
     out_m = out_m - along_m * axis;
     const float squared_m2 = dot(out_m, out_m);
     if (!(squared_m2 > smallest_squared_m2)) return;
@@ -71,7 +73,7 @@ inline void find_tangents(LocalModel& model, const Vector3& proxy_m) {
     Feature& feature = model.features[i];
     renew_tangent(feature, proxy_m, 0.0f);
     const float rise_m = largest_rise_N * feature.surface.m_per_N;
-    feature.rise_m = rise_m < largest_rise_m ? rise_m : largest_rise_m;
+    feature.rise_limit_m = rise_m < largest_rise_m ? rise_m : largest_rise_m;
   }
 }
 

@@ -160,7 +160,7 @@ void find_support(const Barriers& barriers, Support& support) {
 }
 
 void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
-  Barrier* free = list.data() + count;
+  Barrier* free = end();
   if (count == maximum) {
     do {
       if (replaced == list.data()) return;
@@ -247,19 +247,21 @@ void Touch::add_model(const Vector3& probe_m) {
   Feature* renewed = renewed_ + 1;
   if (renewed >= end) renewed = first;
   renewed_ = renewed;
-  renewed->motion.rise_m = least(renewed->recess_m, model_rise_part_ * renewed->rise_m);
+  renewed->motion.rise_m = least(renewed->recess_m, model_rise_part_ * renewed->rise_limit_m);
   renewed->recess_m -= renewed->motion.rise_m;
   const float age_s = model.age_s;
   renew_tangent(*renewed, proxy_m_, age_s);
   const Vector3 at_m = probe_m;
   const float height_m = -barriers_.reach_m;
-  static_assert(wall_normals.size() / 2 + protocol::local_features_maximum <= Barriers::maximum, "append needs room");
+  Barrier* free = barriers_.end();
+  static_assert(wall_normals.size() / 2 + protocol::local_features_maximum <= Barriers::maximum, "the list needs room");
 #pragma GCC unroll 1
   for (Feature* feature = first; feature != end; ++feature) {
     const Plane tangent = feature->tangent;
     const float depth_m = tangent.offset_m + age_s * feature->tangent_speed_m_per_s - dot(tangent.normal, at_m);
-    if (depth_m > height_m) barriers_.append(tangent.normal, depth_m, feature->surface, feature->motion);
+    if (depth_m > height_m) barriers_.set(*free++, tangent.normal, depth_m, feature->surface, feature->motion);
   }
+  barriers_.count = static_cast<std::size_t>(free - barriers_.list.data());
 }
 
 const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls,

@@ -9,8 +9,8 @@
 // plane is outside the convex object. A new tangent plane is farther from the proxy, so it does not increase the force.
 //
 // A new local model does not increase the force: its barriers recede to the proxy, so the previous proxy remains in the
-// free space, and the nearest free point is not farther from the probe than the previous proxy. The features then rise in
-// turn, one in each period.
+// free space, and the nearest free point is not farther from the probe than the previous proxy. The features then rise
+// in turn, one in each period.
 #pragma once
 
 #include <array>
@@ -56,12 +56,8 @@ struct Barriers {
   }
   bool is_in_reach(float depth_m) const { return depth_m > -reach_m; }
   void add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion);
-  /// The same for a list that is not full.
-  void append(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
-    set(list[count++], normal, depth_m, surface, motion);
-  }
-
- private:
+  Barrier* end() { return list.data() + count; }
+  /// Sets a barrier of the list.
   void set(Barrier& barrier, const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
     barrier.normal.x = normal.x;
     barrier.normal.y = normal.y;
@@ -103,7 +99,7 @@ class Touch {
  public:
   LivingShapes shapes;
 
-  /// Activates a new model with tangent planes. The board changes the model in each period until the next call.
+  /// Activates a new model with tangent planes. The board changes the model until the next call. A model is used once.
   [[gnu::cold]] void follow(LocalModel& model);
   /// Advances the objects by one period. Returns true if an object has expired.
   bool age();

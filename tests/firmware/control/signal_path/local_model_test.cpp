@@ -57,6 +57,22 @@ TEST_CASE("between two renewals the tangent plane follows the motion and the rot
   }
 }
 
+TEST_CASE("the tangent plane of a cylinder that has rotated for 20 ms touches the cylinder") {
+  Feature feature = feature_of(FeatureKind::cylinder, {-0.004f, 0, 0}, {1, 0, 0}, 0.01f);
+  for (const float spin_rad_per_s : {3.0f, 10.0f}) {
+    CAPTURE(spin_rad_per_s);
+    constexpr float age_s = 0.02f;
+    feature.axis_rate_per_s = {0, spin_rad_per_s, 0};
+    const Vector3 line{1, age_s * spin_rad_per_s, 0};
+    const Vector3 away_m = cross(line, point_m - feature.centre_m);
+    const float distance_m = std::sqrt(dot(away_m, away_m) / dot(line, line));
+    renew_tangent(feature, point_m, age_s);
+    const float error_m = height_m(feature, age_s) - (distance_m - feature.radius_m);
+    CHECK(error_m > -2e-6f);  // not outside the cylinder
+    CHECK(error_m < 1e-5f);
+  }
+}
+
 TEST_CASE("a new feature excludes no point, and in its core its tangent plane does not change") {
   Feature feature = feature_of(FeatureKind::sphere, point_m, {}, 0.005f);
   renew_tangent(feature, point_m, 0.0f);

@@ -512,14 +512,14 @@ TEST_CASE("an exchange of local models under a pressing hand does not raise the 
       feature.radius_m = kind < 1 ? 0.0f : random.between(0.0005f, 0.01f);
     }
     follow(touch, model);
-    for (int period = 0; period < 20; ++period) {
+    for (int period = 0; period < 100; ++period) {
       const float force_N = length(step(touch, probe_m).objects_N);
       if (period == 0) CHECK(force_N - before_N < 1e-3f);
       before_N = force_N;
       largest_N = std::max(largest_N, force_N);
     }
   }
-  CHECK(largest_N > 0.1f);
+  CHECK(largest_N > 0.5f);
 }
 
 TEST_CASE("friction holds the proxy on one surface of a groove, also while both surfaces are nearer to the probe") {
