@@ -29,9 +29,8 @@ struct Feature {
   Surface surface;
   Motion motion;  ///< the velocity is that of `centre_m`
 
-  /// Tangent plane of the recessed surface. It excludes no point until it is found.
-  Plane tangent{.normal = {}, .offset_m = -1.0f};
-  float tangent_speed_m_per_s = 0.0f;  ///< of the tangent plane along its normal
+  Plane tangent{.normal = {}, .offset_m = -1.0f};  ///< excludes no point until the feature has a tangent plane
+  float tangent_speed_m_per_s = 0.0f;              ///< of the tangent plane along its normal
   /// The surface is this far below its final position. The surface moves outward slowly.
   float recess_m = 0.0f;
   float rise_limit_m = 0.0f;  ///< largest movement outward in a period
@@ -63,8 +62,7 @@ struct LocalModel {
     turn_m_per_s = -along_m * dot(feature.axis_rate_per_s, normal);
   }
   feature.tangent_speed_m_per_s = dot(normal, velocity_m_per_s) - turn_m_per_s;
-  feature.tangent = {normal,
-                     dot(normal, feature.centre_m) + feature.radius_m - feature.recess_m + age_s * turn_m_per_s};
+  feature.tangent = {normal, dot(normal, feature.centre_m) + feature.radius_m + age_s * turn_m_per_s};
 }
 
 /// Sets the tangent planes and the rises of a new model.

@@ -181,7 +181,6 @@ void Touch::follow(LocalModel& model) {
     Feature& feature = model.features[i];
     const float depth_m = feature.tangent.offset_m - dot(feature.tangent.normal, proxy_m_);
     feature.recess_m = depth_m > 0.0f ? depth_m : 0.0f;
-    feature.tangent.offset_m -= feature.recess_m;
   }
 }
 
@@ -243,22 +242,23 @@ void Touch::add_model(const Vector3& probe_m) {
   Feature* const first = model.features.data();
   const Feature* const end = first + model.count;
   if (first == end) return;
-  renewed_->motion.rise_m = 0.0f;
-  Feature* renewed = renewed_ + 1;
-  if (renewed >= end) renewed = first;
-  renewed_ = renewed;
-  renewed->motion.rise_m = least(renewed->recess_m, model_rise_part_ * renewed->rise_limit_m);
-  renewed->recess_m -= renewed->motion.rise_m;
+  ++renewed_;
+  if (renewed_ >= end) renewed_ = first;
   const float age_s = model.age_s;
-  renew_tangent(*renewed, proxy_m_, age_s);
+  renew_tangent(*renewed_, proxy_m_, age_s);
   const Vector3 at_m = probe_m;
   const float height_m = -barriers_.reach_m;
+  const float rise_part = model_rise_part_;
   Barrier* free = barriers_.end();
   static_assert(wall_normals.size() / 2 + protocol::local_features_maximum <= Barriers::maximum, "the list needs room");
 #pragma GCC unroll 1
   for (Feature* feature = first; feature != end; ++feature) {
+    const float rise_m = least(feature->recess_m, rise_part * feature->rise_limit_m);
+    feature->motion.rise_m = rise_m;
+    feature->recess_m -= rise_m;
     const Plane tangent = feature->tangent;
-    const float depth_m = tangent.offset_m + age_s * feature->tangent_speed_m_per_s - dot(tangent.normal, at_m);
+    const float depth_m =
+        tangent.offset_m - feature->recess_m + age_s * feature->tangent_speed_m_per_s - dot(tangent.normal, at_m);
     if (depth_m > height_m) barriers_.set(*free++, tangent.normal, depth_m, feature->surface, feature->motion);
   }
   barriers_.count = static_cast<std::size_t>(free - barriers_.list.data());

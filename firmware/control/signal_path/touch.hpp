@@ -9,8 +9,7 @@
 // plane is outside the convex object. A new tangent plane is farther from the proxy, so it does not increase the force.
 //
 // A new local model does not increase the force: its barriers recede to the proxy, so the previous proxy remains in the
-// free space, and the nearest free point is not farther from the probe than the previous proxy. The features then rise
-// in turn, one in each period.
+// free space, and the nearest free point is not farther from the probe than the previous proxy.
 #pragma once
 
 #include <array>
