@@ -65,7 +65,8 @@ struct LocalModel {
   feature.tangent = {normal, dot(normal, feature.centre_m) + feature.radius_m + age_s * turn_m_per_s};
 }
 
-/// Sets the tangent planes and the rises of a new model.
+/// Sets the tangent planes and the limits of the rises of a new model. This function is inline, because code of the
+/// main loop must not be in the interrupt memory.
 inline void find_tangents(LocalModel& model, const Vector3& proxy_m) {
   for (std::size_t i = 0; i < model.count; ++i) {
     Feature& feature = model.features[i];
