@@ -10,6 +10,8 @@
 
 #include "host/companion/window/frame/imgui_versions.hpp"
 #include "host/companion/window/frame/picture_digest.hpp"
+#include "host/companion/window/frame/window_size.hpp"
+#include "host/companion/window/frame/window_system.hpp"
 
 namespace inkwell::window {
 
@@ -36,6 +38,8 @@ DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
   return {common(box, box_of(command.ClipRect)), digest.value()};
 }
 
+void set_scale(float scale) { ImGui::GetIO().DisplayFramebufferScale = {scale, scale}; }
+
 }  // namespace
 
 void replace_font_atlas(ImFontAtlas* atlas) {
@@ -57,12 +61,10 @@ ImGuiFrames::Context::~Context() { ImGui::DestroyContext(); }
 
 ImGuiFrames::ImGuiFrames(GLFWwindow* window) : keys_(window) {
   ImGui_ImplOpenGL3_Init("#version 330 core");
-  // The first fonts are loaded before the back end sets the pixels per screen unit in the first frame.
-  int units = 0, pixels = 0;
-  glfwGetWindowSize(window, &units, nullptr);
-  glfwGetFramebufferSize(window, &pixels, nullptr);
-  const float scale = units > 0 && pixels > 0 ? static_cast<float>(pixels) / static_cast<float>(units) : 1.0f;
-  ImGui::GetIO().DisplayFramebufferScale = {scale, scale};
+  int width_units = 0, width_pixels = 0;
+  glfwGetWindowSize(window, &width_units, nullptr);
+  glfwGetFramebufferSize(window, &width_pixels, nullptr);
+  set_scale(pixels_per_unit(width_units, width_pixels, has_pixel_units()));  // the first fonts need the scale
 }
 
 ImGuiFrames::~ImGuiFrames() { ImGui_ImplOpenGL3_Shutdown(); }
@@ -70,6 +72,8 @@ ImGuiFrames::~ImGuiFrames() { ImGui_ImplOpenGL3_Shutdown(); }
 void ImGuiFrames::begin() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  // The back end computes the scale from two queries, and a wrong scale would replace all fonts.
+  if (has_pixel_units()) set_scale(1.0f);
   keys_.begin_frame();
 }
 

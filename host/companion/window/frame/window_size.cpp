@@ -10,6 +10,11 @@ DisplayScale display_scale(float content_scale, bool has_pixel_units) {
   return {.pixels_per_point = scale, .pixels_per_unit = has_pixel_units ? 1.0f : scale};
 }
 
+float pixels_per_unit(int width_units, int width_pixels, bool has_pixel_units) {
+  if (has_pixel_units || width_units <= 0 || width_pixels <= 0) return 1.0f;
+  return static_cast<float>(width_pixels) / static_cast<float>(width_units);
+}
+
 WindowFit fit_window(ScreenSize points, const DisplayScale& display, float pixels_per_point,
                      std::optional<ScreenSize> room_pixels) {
   const auto units = [&](int pixels) {

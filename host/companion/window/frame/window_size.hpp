@@ -22,6 +22,10 @@ struct DisplayScale {
 /// `content_scale` is the scale that the desktop reports, such as 2 for 192 dots per inch.
 DisplayScale display_scale(float content_scale, bool has_pixel_units);
 
+/// Returns the pixels per screen unit of a window with the width `width_units`. On X11, the two widths differ if the
+/// window is resized between the two queries.
+float pixels_per_unit(int width_units, int width_pixels, bool has_pixel_units);
+
 /// Initial size and scale of the window, in screen units.
 struct WindowFit {
   ScreenSize size, smallest;

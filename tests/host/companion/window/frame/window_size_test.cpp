@@ -48,6 +48,12 @@ TEST_CASE("on X11, a unit is a pixel, so size and scale follow the display") {
   CHECK(fit(9, true, 0, std::nullopt).units_per_point == 4.0f);
 }
 
+TEST_CASE("a window that is resized between the queries of its two widths keeps its scale on X11") {
+  CHECK(pixels_per_unit(1200, 1280, true) == 1.0f);
+  CHECK(pixels_per_unit(1200, 2400, false) == 2.0f);
+  CHECK(pixels_per_unit(0, 0, false) == 1.0f);  // a window that the desktop does not show
+}
+
 TEST_CASE("on Wayland, the desktop scales the units, so the window does not scale its contents a second time") {
   for (const float scale : {1.0f, 1.25f, 2.0f}) {
     CAPTURE(scale);
