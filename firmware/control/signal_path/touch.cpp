@@ -21,6 +21,9 @@ constexpr std::array<Vector3, 6> wall_normals{{{1.0f, 0.0f, 0.0f},
 constexpr std::size_t renewals_maximum = 2;
 /// Square of the sine of the smallest angle between two barriers that count as two.
 constexpr float flat_sine_squared = 1e-5f;
+/// Square of the smallest volume of three normals that count as three. On a curved surface, the normals have small
+/// angles and a small volume.
+constexpr float flat_volume_squared = 1e-10f;
 
 constexpr float least(float a, float b) { return a < b ? a : b; }
 
@@ -47,10 +50,13 @@ const Barrier* deepest(const Barriers& barriers, const Vector3& out_m) {
 
 /// Sets the support of two barriers, or of one barrier if only that barrier pushes.
 void set_two(Support& support, const Barrier& a, const Barrier& b) {
-  const float cosine = dot(a.normal, b.normal);
-  const float sine_squared = 1.0f - cosine * cosine;
-  const float a_m = a.depth_m - cosine * b.depth_m;
-  const float b_m = b.depth_m - cosine * a.depth_m;
+  // A cosine near 1 would lose the digits of small angles.
+  const Vector3 between = a.normal - b.normal;
+  const float one_minus_cosine = 0.5f * dot(between, between);
+  const float sine_squared = one_minus_cosine * (2.0f - one_minus_cosine);
+  const float deeper_m = a.depth_m - b.depth_m;
+  const float a_m = one_minus_cosine * b.depth_m + deeper_m;
+  const float b_m = one_minus_cosine * a.depth_m - deeper_m;
   if (a_m <= 0.0f) return set_one(support, b);
   if (b_m <= 0.0f || sine_squared < flat_sine_squared) return set_one(support, a);
   const float per_sine_squared = reciprocal(sine_squared);
@@ -66,7 +72,7 @@ void set_two(Support& support, const Barrier& a, const Barrier& b) {
 void set_three(Support& support, const Barrier& a, const Barrier& b, const Barrier& c) {
   const Vector3 bc = cross(b.normal, c.normal), ca = cross(c.normal, a.normal), ab = cross(a.normal, b.normal);
   const float volume = dot(a.normal, bc);
-  if (volume * volume > flat_sine_squared) {
+  if (volume * volume > flat_volume_squared) {
     const float per_volume = volume * reciprocal(volume * volume);
     const Vector3 corner_m = per_volume * (a.depth_m * bc + b.depth_m * ca + c.depth_m * ab);
     const float a_m = per_volume * dot(corner_m, bc), b_m = per_volume * dot(corner_m, ca);

@@ -96,6 +96,38 @@ TEST_CASE("without objects there is no force, and the proxy is the probe") {
   CHECK(touch.proxy_m() == Vector3{0.1f, -0.2f, -5.0f});
 }
 
+TEST_CASE("the proxy is outside all barriers, also at small angles between the barriers") {
+  struct Case {
+    std::array<Vector3, 3> normals;
+    std::array<float, 3> depth_m;
+    std::size_t count;  // barriers that push
+    float to_proxy_m;   // computed in double precision
+  };
+  const std::array cases{Case{{Vector3{0.960600674f, -0.194326162f, -0.198705018f},
+                               {0.956782818f, -0.166951776f, -0.238104716f},
+                               {0.951014638f, -0.236018524f, -0.199665695f}},
+                              {4.6068551e-3f, 4.59455699e-3f, 4.6107918e-3f},
+                              2,
+                              4.6107967e-3f},
+                         Case{{Vector3{-0.34722543f, 0.64742029f, 0.67844045f},
+                               {-0.39004406f, 0.64507288f, 0.65707427f},
+                               {-0.42116132f, 0.61323494f, 0.66825598f}},
+                              {23.921e-3f, 23.952e-3f, 23.935e-3f},
+                              3,
+                              23.952686e-3f}};
+  for (const Case& each : cases) {
+    control::Barriers barriers;
+    barriers.clear();
+    for (std::size_t i = 0; i < 3; ++i) barriers.add(each.normals[i], each.depth_m[i], smooth, {});
+    control::Support support;
+    control::find_support(barriers, support);
+    CHECK(support.count == each.count);
+    CHECK(std::abs(length(support.out_m) - each.to_proxy_m) < 5e-7f);
+    for (std::size_t i = 0; i < 3; ++i)
+      CHECK(barriers.list[i].depth_m - control::dot(barriers.list[i].normal, support.out_m) < 1e-7f);
+  }
+}
+
 TEST_CASE("a plane pushes along its normal with spring and damper, and never pulls") {
   Hand hand;
   put_plane(hand.shapes, 7, {0.6f, 0.0f, 0.8f}, 0.01f, damped(2.0f));
