@@ -50,7 +50,7 @@ struct LocalModel {
   Vector3 out_m = point_m - feature.centre_m - age_s * velocity_m_per_s;
   Vector3 normal = axis;
   float turn_m_per_s = 0.0f;  // inward speed at the foot because of the rotation
-  if (feature.kind == protocol::FeatureKind::plane) {
+  if (feature.kind == protocol::FeatureKind::plane) [[unlikely]] {
     turn_m_per_s = dot(feature.axis_rate_per_s, out_m);
   } else {
     // The axis is longer than 1 after a rotation.

@@ -151,7 +151,7 @@ Vector3 viscous_force_N(const Surface& surface, const Vector3& velocity_m_per_s,
 
 // Each pass adds the barrier that excludes the point most. At most three barriers remain.
 void find_support(const Barriers& barriers, Support& support) {
-  set_one(support, *barriers.deepest);
+  set_one(support, *barriers.deepest.barrier);
   if (barriers.count == 1) return;
   const Barrier* next = deepest(barriers, support.out_m);
   if (next == nullptr) return;
@@ -175,11 +175,12 @@ void Barriers::add(const Vector3& normal, float depth_m, const Surface& surface,
   } else {
     ++count;
   }
-  set(*free, normal, depth_m, surface, motion);
+  free->set(normal, depth_m, surface, motion);
+  deepest.note(*free, depth_m);
 }
 
 void Touch::follow(LocalModel& model) {
-  model_ = &model;
+  model_ = model.count != 0 ? &model : nullptr;
   model_rise_part_ = 0.0f;
   renewed_ = model.features.data();
 #pragma GCC unroll 1
@@ -218,18 +219,14 @@ void Touch::add_walls(const Vector3& probe_m, const Box& walls, const Surface& w
   }
 }
 
-void Touch::add_shapes(const Vector3& probe_m) {
+[[gnu::noinline]] void Touch::add_near_shapes(const Vector3& probe_m, float margin_m) {
   const float height_m = -barriers_.reach_m;
-  const float margin_m = near_margin_m(barriers_.reach_m);
-  shapes.examine(proxy_m_, margin_m);
   const Vector3 at_m = probe_m;
-  std::uint32_t near = shapes.near();
   std::size_t renewals = 0;
-  for (std::size_t i = 0; i < Shapes::maximum && near != 0; ++i) {
+  for (std::uint32_t near = shapes.near(); near != 0; near &= near - 1) {
     const auto number = static_cast<std::size_t>(std::countr_zero(near));
     const Plane& plane = shapes.plane(number);
     float depth_m = plane.offset_m - dot(plane.normal, at_m);
-    near &= near - 1;
     if (!(depth_m > height_m)) continue;
     // A touch does not begin at a tangent plane of another position. Solids that are not renewed are found in turn.
     if (!touches_ && number >= Shapes::planes_maximum) {
@@ -247,7 +244,6 @@ void Touch::add_model(const Vector3& probe_m) {
   LocalModel& model = *model_;
   Feature* const first = model.features.data();
   const Feature* const end = first + model.count;
-  if (first == end) return;
   ++renewed_;
   if (renewed_ >= end) renewed_ = first;
   const float age_s = model.age_s;
@@ -257,16 +253,22 @@ void Touch::add_model(const Vector3& probe_m) {
   const float rise_part = model_rise_part_;
   Barrier* free = barriers_.end();
   static_assert(wall_normals.size() / 2 + protocol::local_features_maximum <= Barriers::maximum, "the list needs room");
+  Deepest deepest = barriers_.deepest;
+  Feature* feature = first;
 #pragma GCC unroll 1
-  for (Feature* feature = first; feature != end; ++feature) {
+  do {
     const float rise_m = least(feature->recess_m, rise_part * feature->rise_limit_m);
     feature->motion.rise_m = rise_m;
     feature->recess_m -= rise_m;
     const Plane tangent = feature->tangent;
     const float depth_m =
         tangent.offset_m - feature->recess_m + age_s * feature->tangent_speed_m_per_s - dot(tangent.normal, at_m);
-    if (depth_m > height_m) barriers_.set(*free++, tangent.normal, depth_m, feature->surface, feature->motion);
-  }
+    if (depth_m > height_m) [[likely]] {
+      free->set(tangent.normal, depth_m, feature->surface, feature->motion);
+      deepest.note(*free++, depth_m);
+    }
+  } while (++feature != end);
+  barriers_.deepest = deepest;
   barriers_.count = static_cast<std::size_t>(free - barriers_.list.data());
 }
 
@@ -277,8 +279,12 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   barriers_.clear();
   if (walls != nullptr) add_walls(probe_m, *walls, wall);
   if (model_ != nullptr) add_model(probe_m);
-  if (shapes.any()) add_shapes(probe_m);
-  if (barriers_.deepest != nullptr) return push(probe_m, velocity_m_per_s, wall);
+  if (shapes.any()) {
+    const float margin_m = near_margin_m(barriers_.reach_m);
+    shapes.examine(proxy_m_, margin_m);
+    if (shapes.near() != 0) add_near_shapes(probe_m, margin_m);
+  }
+  if (barriers_.deepest.barrier != nullptr) return push(probe_m, velocity_m_per_s, wall);
   release(probe_m);
   return force_;
 }

@@ -30,10 +30,31 @@ struct Barrier {
   float depth_m;   ///< depth of the probe; negative if the barrier does not exclude the probe
   const Surface* surface;
   const Motion* motion;  ///< of the surface
+
+  void set(const Vector3& normal_, float depth_m_, const Surface& surface_, const Motion& motion_) {
+    normal.x = normal_.x;
+    normal.y = normal_.y;
+    normal.z = normal_.z;
+    depth_m = depth_m_;
+    surface = &surface_;
+    motion = &motion_;
+  }
 };
 
 /// Depth above which a barrier excludes a point. Rounding errors are smaller.
 inline constexpr float depth_tolerance_m = 1e-7f;
+
+/// The barrier that excludes the probe most.
+struct Deepest {
+  const Barrier* barrier = nullptr;  ///< null if no barrier excludes the probe
+  float depth_m = depth_tolerance_m;
+
+  void note(const Barrier& other, float other_depth_m) {
+    if (!(other_depth_m > depth_m)) return;
+    depth_m = other_depth_m;
+    barrier = &other;
+  }
+};
 
 /// Barriers of one period. If there are more barriers, those that exclude the probe replace the others.
 struct Barriers {
@@ -41,33 +62,19 @@ struct Barriers {
 
   std::array<Barrier, maximum> list{};
   std::size_t count = 0;
-  Barrier* replaced = nullptr;       ///< in a full list, this barrier and all later ones exclude the probe
-  const Barrier* deepest = nullptr;  ///< of the barriers that exclude the probe; null for none
-  float deepest_m = 0.0f;
+  Barrier* replaced = nullptr;  ///< in a full list, this barrier and all later ones exclude the probe
+  Deepest deepest;
   /// A barrier at this distance from the probe may exclude the point to which other barriers push the proxy.
   float reach_m = 0.0f;
 
   void clear() {
     count = 0;
     replaced = list.data() + maximum;
-    deepest = nullptr;
-    deepest_m = depth_tolerance_m;
+    deepest = {};
   }
   bool is_in_reach(float depth_m) const { return depth_m > -reach_m; }
   void add(const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion);
   Barrier* end() { return list.data() + count; }
-  /// Sets a barrier of the list.
-  void set(Barrier& barrier, const Vector3& normal, float depth_m, const Surface& surface, const Motion& motion) {
-    barrier.normal.x = normal.x;
-    barrier.normal.y = normal.y;
-    barrier.normal.z = normal.z;
-    barrier.depth_m = depth_m;
-    barrier.surface = &surface;
-    barrier.motion = &motion;
-    if (depth_m <= deepest_m) return;
-    deepest_m = depth_m;
-    deepest = &barrier;
-  }
 };
 
 /// Barriers that support the nearest free point.
@@ -103,7 +110,7 @@ class Touch {
   /// Advances the objects by one period. Returns true if an object has expired.
   bool age();
   /// Returns true if there are shapes or features of a local model.
-  bool has_objects() const { return shapes.any() || (model_ != nullptr && model_->count != 0); }
+  bool has_objects() const { return shapes.any() || model_ != nullptr; }
 
   /// Returns false if the proxy cannot touch a wall. Then `walls` may be null.
   bool can_touch_wall(const Contact& contact) const {
@@ -133,7 +140,7 @@ class Touch {
   /// Moves the proxy, which touches a barrier.
   const TouchForce& push(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Surface& wall);
   void add_walls(const Vector3& probe_m, const Box& walls, const Surface& wall);
-  void add_shapes(const Vector3& probe_m);
+  void add_near_shapes(const Vector3& probe_m, float margin_m);
   void add_model(const Vector3& probe_m);
 
   LocalModel* model_ = nullptr;
