@@ -178,8 +178,9 @@ void Controller::render_force(const Settings& settings) {
   probe_.wall = {settings.wall.stiffness_N_per_m, settings.wall.damping_Ns_per_m};
   if (touch_.has_objects()) {
     const bool may_touch_wall = law_is_felt && touch_.can_touch_wall(probe_.contact);
-    const TouchForce& touch = touch_.step(probe_.position_m, probe_.velocity_m_per_s,
-                                          may_touch_wall ? &settings.box : nullptr, settings.wall);
+    const TouchForce& touch =
+        touch_.step(probe_.position_m, probe_.velocity_m_per_s, may_touch_wall ? &settings.box : nullptr, settings.wall,
+                    settings.contact_limit);
     reserve_.spend(touch.raised_J);
     rendered_N = touch.objects_N;
     probe_.walls_N = touch.walls_N;

@@ -63,6 +63,8 @@ Box box(const ParameterSet& set) {
           vector_of(set.of_each(Parameter::box_maximum_x_m)) - radius};
 }
 
+ForceLimit contact_limit(float limit_N) { return {limit_N, limit_N > 0.0f ? 1.0f / limit_N : 0.0f}; }
+
 Surface wall(const ParameterSet& set) {
   const float stiffness_N_per_m = set[Parameter::wall_stiffness_N_per_m];
   return {.stiffness_N_per_m = stiffness_N_per_m,
@@ -202,6 +204,7 @@ Settings prepare(const ParameterSet& parameters) {
           .wall = wall(parameters),
           .force_law = force_law(parameters),
           .force_limit_N = parameters[Parameter::force_limit_N],
+          .contact_limit = contact_limit(parameters[Parameter::force_limit_N]),
           .recovery_N_per_period = recovery_per_s * protocol::servo_period_s * parameters[Parameter::force_limit_N],
           .program_force = program_force(parameters),
           .ramp_per_period = ramp_per_period(parameters[Parameter::force_ramp_s]),

@@ -46,6 +46,7 @@ struct Settings {
   Surface wall;
   ForceLawValues force_law;
   float force_limit_N;          ///< bound of the magnitude of the total force
+  ForceLimit contact_limit;     ///< the same bound for touched objects
   float recovery_N_per_period;  ///< recovery rate after a jump of a force component (Transition)
   ProgramForceLimits program_force;
   float ramp_per_period;     ///< rise of the force gain per control period

@@ -155,7 +155,11 @@ glm::dvec3 held_back_m(Tool& tool, Hold hold, const glm::dvec3& frictionless_m, 
   glm::dvec3 lag_m = hold.held_m - frictionless_m;
   lag_m -= normal * glm::dot(normal, lag_m);
   const double length_m = glm::length(lag_m);
-  const auto bound_m = [&](float friction) { return static_cast<double>(friction) * depth_m; };
+  // The friction follows the normal force that the hand feels.
+  const double felt_m = pose.force_limit_N > 0
+                            ? std::min(depth_m, pose.force_limit_N / static_cast<double>(material.stiffness_N_per_m))
+                            : depth_m;
+  const auto bound_m = [&](float friction) { return static_cast<double>(friction) * felt_m; };
   tool.slides = length_m > bound_m(tool.slides ? material.dynamic_friction : material.static_friction);
   if (tool.slides) lag_m *= bound_m(material.dynamic_friction) / length_m;
   return frictionless_m + lag_m;

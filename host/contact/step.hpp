@@ -22,7 +22,8 @@ inline constexpr double look_ahead_m = 0.002;
 struct Pose {
   glm::dvec3 position_m{};
   glm::dvec3 velocity_m_per_s{};
-  glm::dvec3 force_N{};  ///< of the board on the hand, without a limit; 0: not known
+  glm::dvec3 force_N{};      ///< of the board on the hand, without a limit; 0: not known
+  double force_limit_N = 0;  ///< largest force of the board on the hand; 0: no limit
   std::uint32_t sequence = 0;
   double scene_age_s = 0;  ///< time since the placements of the scene were valid
 };

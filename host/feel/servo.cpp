@@ -72,6 +72,7 @@ void Servo::follow_parameters(const device::DrivenPose& driven) {
   arm_ = control::prepare(driven.parameters).arm;
   // The contact step raises a radius below contact::tip_radius_min_m.
   const auto radius_m = static_cast<double>(driven.parameters[protocol::Parameter::sphere_radius_m]);
+  force_limit_N_ = static_cast<double>(driven.parameters[protocol::Parameter::force_limit_N]);
   // A larger tip would overlap the touched object.
   if (radius_m != tool_.radius_m) tool_.is_placed = false;
   tool_.radius_m = radius_m;
@@ -132,6 +133,7 @@ std::optional<device::LocalModel> Servo::step(const device::DrivenPose& driven) 
                                {.position_m = position_m,
                                 .velocity_m_per_s = {velocity_m_s[0], velocity_m_s[1], velocity_m_s[2]},
                                 .force_N = pose.limits == 0 ? vector_of(pose.force_N) : glm::dvec3{},
+                                .force_limit_N = force_limit_N_,
                                 .sequence = static_cast<std::uint32_t>(pose.sequence)});
   counters_.longest_step_s =
       std::max(counters_.longest_step_s, std::chrono::duration<double>(Clock::now() - begin).count());

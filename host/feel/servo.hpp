@@ -84,6 +84,7 @@ class Servo {
   contact::Scene scene_;
   bool materials_are_new_ = false;
   contact::Tool tool_;
+  double force_limit_N_ = 0;
   contact::Step newest_step_;
   kinematics::VelocityFit velocity_;
   control::Arm arm_{};

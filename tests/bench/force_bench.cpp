@@ -80,7 +80,7 @@ void walls_and_shapes(benchmark::State& state) {
                                  .viscosity_Ns_per_m = 0.0f};
   for (auto _ : state) {
     const auto& moment = path.next();
-    benchmark::DoNotOptimize(touch.step(moment.position_m, moment.velocity_m_per_s, &box, surface));
+    benchmark::DoNotOptimize(touch.step(moment.position_m, moment.velocity_m_per_s, &box, surface, {}));
   }
 }
 

@@ -14,6 +14,12 @@ struct Surface {
   float viscosity_Ns_per_m;  ///< tangential force per tangential speed; the force does not exceed the normal force
 };
 
+/// Limit of the force on the hand. Friction follows the normal force that the hand feels.
+struct ForceLimit {
+  float limit_N = 0.0f;
+  float per_limit_per_N = 0.0f;  ///< 1 / limit; 0 without a limit
+};
+
 /// Motion of a surface.
 struct Motion {
   Vector3 velocity_m_per_s;

@@ -273,7 +273,7 @@ void Touch::add_model(const Vector3& probe_m) {
 }
 
 const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls,
-                              const Surface& wall) {
+                              const Surface& wall, const ForceLimit& limit) {
   if (!touches_) proxy_m_ = probe_m;
   force_ = {};
   barriers_.clear();
@@ -284,13 +284,13 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
     shapes.examine(proxy_m_, margin_m);
     if (shapes.near() != 0) add_near_shapes(probe_m, margin_m);
   }
-  if (barriers_.deepest.barrier != nullptr) return push(probe_m, velocity_m_per_s, wall);
+  if (barriers_.deepest.barrier != nullptr) return push(probe_m, velocity_m_per_s, wall, limit);
   release(probe_m);
   return force_;
 }
 
 [[gnu::noinline]] const TouchForce& Touch::push(const Vector3& probe_m, const Vector3& velocity_m_per_s,
-                                                const Surface& wall) {
+                                                const Surface& wall, const ForceLimit& limit) {
   find_support(barriers_, support_);
   const Support& support = support_;
   touches_ = true;
@@ -338,10 +338,16 @@ const TouchForce& Touch::step(const Vector3& probe_m, const Vector3& velocity_m_
   const Vector3 sideways_m_per_s = tangential(velocity_m_per_s - main->motion->velocity_m_per_s);
   if (surface.static_friction != 0.0f) {
     const Vector3 lag_m = find_lag_m(barriers_, support, held_m - probe_m, normal);
-    const Friction held = find_friction(surface, lag_m, sideways_m_per_s, normal_N, slides_);
+    // The limit of the force scales the whole force, so the friction compensates for the scaling.
+    float felt_N = normal_N, beyond = normal_N * limit.per_limit_per_N;
+    if (beyond > 1.0f)
+      felt_N = limit.limit_N;
+    else
+      beyond = 1.0f;
+    const Friction held = find_friction(surface, lag_m, sideways_m_per_s, felt_N, slides_);
     slides_ = held.slides;
     proxy_m_ = frictionless_m + held.lag_m;
-    main_N = main_N + held.force_N;
+    main_N = main_N + beyond * held.force_N;
   }
   if (surface.viscosity_Ns_per_m != 0.0f) main_N = main_N + viscous_force_N(surface, sideways_m_per_s, normal_N);
   return force_;

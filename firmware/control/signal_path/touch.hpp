@@ -119,8 +119,8 @@ class Touch {
 
   /// Runs one period. `walls` is null if the hand does not feel the walls of the box. Without objects, wall_force_N()
   /// returns the same force of the walls in fewer cycles.
-  const TouchForce& step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls,
-                         const Surface& wall);
+  const TouchForce& step(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Box* walls, const Surface& wall,
+                         const ForceLimit& limit);
   /// Ends all contacts. Call this function in each period without force and without objects.
   void release(const Vector3& probe_m) {
     proxy_m_ = probe_m;
@@ -138,7 +138,8 @@ class Touch {
  private:
   bool age_model();
   /// Moves the proxy, which touches a barrier.
-  const TouchForce& push(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Surface& wall);
+  const TouchForce& push(const Vector3& probe_m, const Vector3& velocity_m_per_s, const Surface& wall,
+                         const ForceLimit& limit);
   void add_walls(const Vector3& probe_m, const Box& walls, const Surface& wall);
   void add_near_shapes(const Vector3& probe_m, float margin_m);
   void add_model(const Vector3& probe_m);

@@ -51,7 +51,8 @@ float reciprocal(float value) {
   return estimate;
 }
 
-float reciprocal_square_root(float value) { return find_reciprocal_square_root(value); }
+// Not inlined, because copies of this code would fill the interrupt memory.
+[[gnu::noinline]] float reciprocal_square_root(float value) { return find_reciprocal_square_root(value); }
 
 bool is_finite(float value) {
   constexpr std::uint32_t exponent = 0x7F800000u;

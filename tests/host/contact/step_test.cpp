@@ -234,6 +234,11 @@ TEST_CASE("friction holds the proxy back") {
     hand.stay(1);
     CHECK(hand.last.proxy_m.x == doctest::Approx(0.4 * depth_m).epsilon(0.01).scale(0));
   }
+  SUBCASE("above the force limit, friction holds as at the limit") {
+    hand.pose.force_limit_N = 0.25;
+    hand.go_straight({0.003, 0, 0}, 0.00001);
+    CHECK(hand.last.proxy_m.x == doctest::Approx(0.003 - 0.4 * 0.25 / 500).epsilon(0.01).scale(0));
+  }
   SUBCASE("a moving object carries the proxy") {
     for (int step = 0; step < 10; ++step) {
       hand.scene.objects[0].placement.position_m.x += 0.00002;

@@ -27,6 +27,8 @@ constexpr Surface smooth{.stiffness_N_per_m = 1000.0f,
                          .dynamic_friction = 0.0f,
                          .viscosity_Ns_per_m = 0.0f};
 
+constexpr control::ForceLimit no_limit{};
+
 Surface rough(float static_friction, float dynamic_friction) {
   Surface surface = smooth;
   surface.static_friction = static_friction;
@@ -66,7 +68,7 @@ struct Hand {
   }
   Vector3 at(const Vector3& point_m, const Vector3& velocity_m_per_s = {}) {
     probe_m = point_m;
-    return touch.step(probe_m, velocity_m_per_s, nullptr, smooth).objects_N;
+    return touch.step(probe_m, velocity_m_per_s, nullptr, smooth, no_limit).objects_N;
   }
   /// Moves the probe on a straight line in steps of at most 50 um, and returns the last force.
   Vector3 move_to(const Vector3& point_m) {
@@ -90,7 +92,7 @@ constexpr Solid table{.core = Core::box,
 TEST_CASE("without objects there is no force, and the proxy is the probe") {
   Touch touch;
   CHECK(!touch.has_objects());
-  const TouchForce force = touch.step({0.1f, -0.2f, -5.0f}, {1.0f, 1.0f, 1.0f}, nullptr, smooth);
+  const TouchForce force = touch.step({0.1f, -0.2f, -5.0f}, {1.0f, 1.0f, 1.0f}, nullptr, smooth, no_limit);
   CHECK(force.objects_N == Vector3{});
   CHECK(force.walls_N == Vector3{});
   CHECK(touch.proxy_m() == Vector3{0.1f, -0.2f, -5.0f});
@@ -166,7 +168,7 @@ TEST_CASE("walls at right angles give the force of the paper, with damping, also
     const Contact contact = find_contact(probe_m, box);
     const Vector3 paper_N = wall_force_N(contact, velocity_m_per_s, {1000.0f, 5.0f});
     Touch touch;
-    const TouchForce force = touch.step(probe_m, velocity_m_per_s, &box, wall);
+    const TouchForce force = touch.step(probe_m, velocity_m_per_s, &box, wall, no_limit);
     CHECK(length(force.walls_N - paper_N) < 1e-4f);
     CHECK(force.objects_N == Vector3{});
   }
@@ -365,6 +367,22 @@ TEST_CASE("friction sticks up to its static bound, then slides with the dynamic 
   CHECK(force_at(0.0012f).z == doctest::Approx(1.0f));
 }
 
+TEST_CASE("above the force limit, friction holds the proxy as at the limit, and the force keeps its direction") {
+  Touch touch;
+  Shapes shapes;
+  put_plane(shapes, 0, up, 0.0f, rough(0.5f, 0.4f));
+  find_tangents(shapes, {});
+  touch.shapes.replace(shapes);
+  constexpr control::ForceLimit limit{2.0f, 0.5f};
+  constexpr float depth_m = 0.01f;  // 10 N
+  Vector3 force_N;
+  for (int i = 0; i <= 1000; ++i)
+    force_N = touch.step({static_cast<float>(i) * 10e-6f, 0, -depth_m}, {}, nullptr, smooth, limit).objects_N;
+  CHECK(touch.proxy_m().x == doctest::Approx(0.01f - 0.4f * 2.0f / 1000.0f));
+  CHECK(force_N.z == doctest::Approx(10.0f));
+  CHECK(force_N.x == doctest::Approx(-0.4f * 10.0f));
+}
+
 TEST_CASE("the friction ends where the probe leaves the surface, and starts where the probe touches it again") {
   Hand hand;
   put_plane(hand.shapes, 0, up, 0.0f, rough(1.0f, 1.0f));
@@ -461,7 +479,7 @@ void follow(Touch& touch, LocalModel& model) {
 /// Runs a period without walls.
 TouchForce step(Touch& touch, const Vector3& probe_m, const Vector3& velocity_m_per_s = {}) {
   touch.age();
-  return touch.step(probe_m, velocity_m_per_s, nullptr, smooth);
+  return touch.step(probe_m, velocity_m_per_s, nullptr, smooth, no_limit);
 }
 
 LocalModel model_of(std::initializer_list<control::Feature> features) {
@@ -668,7 +686,7 @@ TEST_CASE("walls and objects share one proxy") {
   put_plane(hand.shapes, 0, up, 0.0f, smooth);  // in the wall
   hand.place();
   const Vector3 probe_m{0.0f, 0.0f, -0.001f};
-  const TouchForce force = hand.touch.step(probe_m, {}, &box, smooth);
+  const TouchForce force = hand.touch.step(probe_m, {}, &box, smooth, no_limit);
   CHECK((force.walls_N + force.objects_N).z == doctest::Approx(1.0f).epsilon(1e-3));
 }
 
