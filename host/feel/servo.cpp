@@ -72,10 +72,10 @@ void Servo::follow_parameters(const device::DrivenPose& driven) {
   arm_ = control::prepare(driven.parameters).arm;
   // The contact step raises a radius below contact::tip_radius_min_m.
   const auto radius_m = static_cast<double>(driven.parameters[protocol::Parameter::sphere_radius_m]);
-  force_limit_N_ = static_cast<double>(driven.parameters[protocol::Parameter::force_limit_N]);
   // A larger tip would overlap the touched object.
   if (radius_m != tool_.radius_m) tool_.is_placed = false;
   tool_.radius_m = radius_m;
+  force_limit_N_ = static_cast<double>(driven.parameters[protocol::Parameter::force_limit_N]);
 }
 
 void Servo::follow_button(const device::Pose& pose, const HandPlacement& hand) {

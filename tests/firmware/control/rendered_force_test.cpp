@@ -326,6 +326,23 @@ TEST_CASE("all together stay below the force limit, in their direction") {
   CHECK(force_N.z / force_N.x == doctest::Approx(-1.0f).epsilon(1e-2));  // the floor and the wall are parallel
 }
 
+TEST_CASE("a floor that is pressed with more than the force limit holds the proxy as at the limit") {
+  StillArm arm;
+  control::Shapes shapes = arm.floor(0.015f);  // 15 N
+  shapes.surfaces[0].static_friction = shapes.surfaces[0].dynamic_friction = 0.5f;
+  arm.controller.replace_shapes(shapes);
+  auto samples = tests::samples_at_rest();
+  for (int millisecond = 0; millisecond < 100; ++millisecond) {
+    ++samples.encoder_counts[0];
+    arm.controller.host_alive();
+    tests::run(arm.controller, samples, arm.settings, 20);
+  }
+  const auto signals = arm.controller.signals();
+  const Vector3 proxy_m = arm.controller.proxy_m();
+  const float lag_m = std::hypot(proxy_m.x - signals[Signal::position_x_m], proxy_m.y - signals[Signal::position_y_m]);
+  CHECK(lag_m == doctest::Approx(0.5f * arm.settings.force_limit_N / 1000.0f).scale(0).epsilon(0.01));
+}
+
 TEST_CASE("a program moves nothing while the force is off, and is ramped in with it") {
   const control::Settings settings = control::prepare(parameters_in_wall());
   control::Controller controller = tests::ready_controller(settings);

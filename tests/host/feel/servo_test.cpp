@@ -115,6 +115,19 @@ TEST_CASE("with friction, the model belongs to the proxy of the board, which a f
   CHECK(view.contacts[0].point_m.x == doctest::Approx(proxy_m).scale(1).epsilon(1e-6));
 }
 
+TEST_CASE("friction holds the proxy only as far as the force limit of the board can") {
+  ServoRig rig;
+  auto scene = std::make_shared<contact::Scene>();
+  scene->objects.push_back({.id = ball, .shape = contact::Plane{}});
+  scene->materials[0] = {.stiffness_N_per_m = 500, .static_friction = 1, .dynamic_friction = 1};
+  rig.publication.publish(scene);
+  rig.parameters[protocol::Parameter::force_limit_N] = 0.1f;
+  rig.at(0.02);
+  rig.at(0.004);
+  rig.at(0.004, 0.0005);
+  CHECK(rig.servo.newest_step().proxy_m.x == doctest::Approx(0.0005 - 0.1 / 500).scale(0).epsilon(0.01));
+}
+
 TEST_CASE("a hand in the object is free when the force is switched on, until it has left the object") {
   ServoRig rig;
   rig.pose.state = protocol::State::ready;
